@@ -73,14 +73,15 @@ std::string conform_text(const ConformReport& r) {
       "the probability that any is reported as broken is {:.2g}: a test fails below p = {:.2g}.\n\n",
       r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), r.effort.samples,
       r.effort.seed, counted(r.findings.size(), "test"), r.false_alarm_rate, r.level);
-  if (r.all_hold() && !is_there(r)) text += "The surface is not there: there is no BSDF to ask.\n\n";
+  if (r.all_hold() && !is_there(r)) text += "The surface is invisible: it has no BSDF to test.\n\n";
   text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", "", "law", "", "worst p", "");
   for (const LawSummary& law : summarise(r.findings)) {
     text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", verdict(law), law.law.name, tests_text(law),
                         p_text(law), law.law.text);
     text += failures_text(r, law.law.law);
   }
-  return text + (r.all_hold() ? "\nAll tested laws hold.\n" : "\nBroken: " + broken_text(r) + ".\n");
+  if (!r.all_hold()) return text + "\nBroken: " + broken_text(r) + ".\n";
+  return text + (is_there(r) ? "\nAll tested laws hold.\n" : "\nOnly the law of parameters was tested; it holds.\n");
 }
 
 std::vector<Fact> conform_facts(const ConformReport& r) {

@@ -8,6 +8,7 @@ namespace frond::test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// Over a whole examination of one BSDF. With some 40 of them below, this file's tests raise a false alarm at less than
@@ -103,6 +104,12 @@ TEST(Planted, SampleWithAnotherFBreaksAgreement) {
 
 TEST(Planted, NanAtGrazingBreaksValues) { EXPECT_THAT(broken<NanAtGrazing>(), ElementsAre(Law::values)); }
 
+TEST(Planted, AnExceptionBreaksValues) {
+  const auto found = findings(planted<ThrowsAtGrazing>("throws"));
+  EXPECT_THAT(broken_laws(found), ElementsAre(Law::values));
+  EXPECT_THAT(failures_text(found), HasSubstr("an exception is thrown: cos theta is too small"));
+}
+
 TEST(Planted, ScatteringAtZeroCosineBreaksValues) {
   EXPECT_THAT(broken<ScattersAtZeroCosine>(), ElementsAre(Law::values));
 }
@@ -111,6 +118,7 @@ TEST(Planted, NegativeFBreaksValues) { EXPECT_THAT(broken<NegativeF>(), Elements
 
 TEST(Planted, WorkForARetiredLaneBreaksLanes) {
   EXPECT_THAT((broken<WorksForRetiredLane>({}, GivenWavelengths({420, 500, 580, 660}, {1}))), ElementsAre(Law::lanes));
+  EXPECT_THAT(broken<WorksForRetiredLane>(), ElementsAre(Law::lanes));  // a lane is retired if none is
 }
 
 TEST(Planted, OneWayStreetThatClaimsReciprocityBreaksIt) {

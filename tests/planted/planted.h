@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/material.h"
 #include "core/sampling.h"
@@ -229,6 +230,13 @@ struct NegativeF final : Honest {
 };
 
 /// Goes on working for a lane that was retired; needs wavelengths with such a lane.
+struct ThrowsAtGrazing final : Honest {
+  explicit ThrowsAtGrazing(const SampledWavelengths& lambda) : Honest(lambda, 0.4f, 0.4f) {}
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    if (std::abs(wi.z) < 1e-6f) throw std::domain_error("cos theta is too small");
+    return evaluate(wo, wi);
+  }
+};
 struct WorksForRetiredLane final : Honest {
   explicit WorksForRetiredLane(const SampledWavelengths& lambda) : Honest(lambda, 0.4f, 0.4f) {
     for (int i = 0; i < lambda.count; ++i) t_[i] = 0.4f;

@@ -22,6 +22,13 @@ class Pages(unittest.TestCase):
             for target in LINK.findall(text):
                 self.assertTrue((page.parent / target).exists(), f"{page}: {target}")
 
+    def test_output_follows_the_commands_that_print_it(self):
+        for page in (ROOT / "docs").glob("*.md"):
+            blocks = re.findall(r"^```(\w*)\n(?:(?!```).*\n)*```$", page.read_text(encoding="utf-8"), re.M)
+            for before, language in zip([None, *blocks], blocks):
+                if language == "output":
+                    self.assertIn(before, ("sh", "python"), page)
+
     def test_figures_are_those_of_the_measured_pages(self):
         text = lambda page: " ".join((ROOT / page).read_text(encoding="utf-8").split())
         paper, radiometry = text("joss/paper.md"), text("docs/radiometry.md")

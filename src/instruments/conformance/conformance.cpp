@@ -21,21 +21,23 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
       const double phi = 0.4 + 0.03 * angle_deg;  // off the axes, where errors of azimuth would not show
       ExaminationEffort own = effort;
       own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
-      const Examination s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
-                          fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back"));
-      check_sampling(s, findings);
-      check_normalisation(s, findings);
-      check_energy(s, claims, own.seed, findings);
-      check_unbiasedness(s, findings);
-      check_streams(s, own.seed, findings);
-      check_agreement(s, findings);
-      check_flags(s, findings);
-      check_lanes(s, findings);
-      check_coverage(s, findings);
-      check_values(s, findings);
+      const std::string here = fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back");
+      run_guarded(here, findings, [&] {
+        const Examination s(bsdf, lambda, sphere_direction(cos_theta, phi), own, here);
+        check_sampling(s, findings);
+        check_normalisation(s, findings);
+        check_energy(s, claims, own.seed, findings);
+        check_unbiasedness(s, findings);
+        check_streams(s, own.seed, findings);
+        check_agreement(s, findings);
+        check_flags(s, findings);
+        check_lanes(s, findings);
+        check_coverage(s, findings);
+        check_values(s, findings);
+      });
     }
-  check_awkward_values(bsdf, where, effort.seed, findings);
-  if (claims.reciprocal) check_reciprocity(bsdf, where, effort, findings);
+  run_guarded(where, findings, [&] { check_awkward_values(bsdf, where, effort.seed, findings); });
+  if (claims.reciprocal) run_guarded(where, findings, [&] { check_reciprocity(bsdf, where, effort, findings); });
   return findings;
 }
 

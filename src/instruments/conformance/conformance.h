@@ -25,8 +25,9 @@ enum class Law : uint8_t {
   energy,         ///< exitant power is at most the incident power at each wavelength; equal for materials claimed to
                   ///< be lossless
   flags,          ///< sides and lobes are as the flags state
-  values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0
-  lanes,          ///< lanes that are not active hold 0
+  values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0;
+                  ///< nothing is thrown
+  lanes,          ///< lanes that are not active hold 0, also those that were retired on the path
   reciprocity,    ///< f(a, b) = f(b, a), where claimed; with the squares of the indices of refraction (Bsdf)
   unbiasedness,   ///< not exact: in every bin and on each side, the mean weight of `sample` is the integral of f |cos
                   ///< theta|
@@ -48,7 +49,7 @@ inline constexpr std::array<LawInfo, 12> kLaws{{
     {Law::normalisation, "normalisation", "pdf integrates to the share of samples that have a direction"},
     {Law::energy, "energy", "exitant power is at most the incident power; equal if lossless"},
     {Law::flags, "flags", "sides and lobes agree with the flags"},
-    {Law::values, "values", "all finite, none negative; nothing scatters at cos theta = 0"},
+    {Law::values, "values", "all finite, none negative; nothing scatters at cos theta = 0 or throws"},
     {Law::lanes, "lanes", "wavelengths that are not active hold 0"},
     {Law::reciprocity, "reciprocity", "f(a, b) = f(b, a), where claimed"},
     {Law::unbiasedness, "unbiasedness", "other BSDFs: sample's mean weights are the integrals of f |cos theta|"},

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -150,8 +152,31 @@ void check_coverage(const Examination& s, Findings& findings);
 void check_values(const Examination& s, Findings& findings);
 
 // Laws of a BSDF as a whole.
+/// `lambda`: the wavelengths of the BSDF, of which a lane in use is retired.
+void check_retired_lanes(const Bsdf& bsdf, const SampledWavelengths& lambda, const std::string& where, uint64_t seed,
+                         Findings& findings);
 void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
 void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
+
+/// Runs `test`. An exception that a BSDF or a material throws becomes a finding of Law::values; Stopped and a lack of
+/// memory pass through.
+template <class Test>
+void run_guarded(const std::string& where, Findings& findings, const Test& test) {
+  const auto report = [&](const std::string& message) {
+    findings.push_back({.law = Law::values, .where = where, .message = message, .p_value = 0});
+  };
+  try {
+    test();
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    report(fmt::format("an exception is thrown: {}", error.what()));
+  } catch (...) {
+    report("an object that is no std::exception is thrown");
+  }
+}
 
 /// Verdict on a law that permits no exception: passes until the first violation, whose text it stores.
 class Verdict {

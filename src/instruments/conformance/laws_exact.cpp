@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "instruments/conformance/examination.h"
@@ -97,6 +98,26 @@ void check_lanes(const Examination& s, Findings& findings) {
   for (const Examination::Probe& probe : s.probes) {
     verdict.at(probe.wi());
     verdict.expect(idle_lanes_are_black(probe.f, s.lambda), "f, wi {}: a lane that is not active is not 0", probe.wi());
+  }
+  findings.push_back(verdict.finding());
+}
+
+void check_retired_lanes(const Bsdf& bsdf, const SampledWavelengths& lambda, const std::string& where, uint64_t seed,
+                         Findings& findings) {
+  constexpr int kDirections = 100;
+  Verdict verdict(Law::lanes, where);
+  RandomStream numbers(seed);
+  const auto direction = [&numbers] {
+    const double z = 2 * numbers.uniform_double() - 1;
+    return sphere_direction(z, 2 * std::numbers::pi * numbers.uniform_double());
+  };
+  for (int i = 0; i < kDirections; ++i) {
+    const Vec3 wo = direction(), wi = direction();
+    const SampledSpectrum f = f_once(bsdf, wo, wi, hash_key(seed, i));
+    verdict.expect(idle_lanes_are_black(f, lambda), "wo {}, wi {}: f of a retired lane is not 0: {}", wo, wi, f);
+    if (const auto s = draw_once(bsdf, wo, hash_key(seed, i)))
+      verdict.expect(idle_lanes_are_black(s->f, lambda), "wo {}: a sample's f of a retired lane is not 0: {}", wo,
+                     s->f);
   }
   findings.push_back(verdict.finding());
 }

@@ -71,12 +71,26 @@ Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, c
     if (!material) continue;
     const Claims claims{how.claims.lossless, how.claims.reciprocal || material->is_reciprocal()};
     arena.reset();
-    if (const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena)) {  // nullptr: an invisible surface
+    // `evaluate` returns nullptr for an invisible surface.
+    run_guarded(where, findings, [&] {
+      const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena);
+      if (!bsdf) return;
       const Findings more = examine(*bsdf, lambda, claims, effort, where);
       findings.insert(findings.end(), more.begin(), more.end());
-    }
-    if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
-      check_awkward_values(*bsdf, where + ", under a tilted shading normal", effort.seed, findings);
+    });
+    const std::string tilted = where + ", under a tilted shading normal";
+    run_guarded(tilted, findings, [&] {
+      if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
+        check_awkward_values(*bsdf, tilted, effort.seed, findings);
+    });
+    if (lambda.count == 1) continue;  // a path whose only lane is retired has ended
+    SampledWavelengths retired = lambda;
+    retired.active[0] = false;
+    const std::string partly = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(retired));
+    run_guarded(partly, findings, [&] {
+      if (const Bsdf* bsdf = material->evaluate(flat_hit(), retired, arena))
+        check_retired_lanes(*bsdf, retired, partly, effort.seed, findings);
+    });
   }
   return findings;
 }

@@ -1,0 +1,98 @@
+"""The examples of the pages: runs their commands and writes what they print."""
+
+import argparse
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from tools import BUILD, FROND, ROOT, write
+
+EXAMPLE = re.compile(r"^```(?P<language>sh|python)\n(?P<commands>(?:(?!```).*\n)*)```\n\n?```output\n(?P<output>(?:(?!```).*\n)*)```$", re.M)
+LIMIT_S = 600
+
+
+def form(line):
+    """A line without its numbers and the width of its columns."""
+    return re.sub(r"[\s\d.±+-]+|e-\d+", "#", line)
+
+
+def without_columns(lines, header):
+    """Lines of a table of right-aligned columns, less those for which `...` stands in the documented header."""
+    fields = re.split(r" {2,}", header.strip())
+    before, after = fields.index("..."), len(fields) - fields.index("...") - 1
+    found = [m.end() for m in re.finditer(r"\S+(?: \S+)*", lines[0])]
+    first, last = found[before - 1], found[len(found) - after - 1]
+    return [f"{line[:first]}  {'...' if line.strip() else ''}{line[last:]}".rstrip() for line in lines]
+
+
+def shortened(old, new):
+    """`new` with the lines and columns left out that `old` leaves out."""
+    old, new, result = old.splitlines(), new.splitlines(), []
+    while old:
+        if old[0].strip() == "...":
+            result.append(old.pop(0))
+            if not old:
+                break
+            while new and form(new[0]) != form(old[0]):
+                new.pop(0)
+        elif re.search(r" \.\.\.(  |$)", old[0]):
+            length = next((i for i, line in enumerate(new) if not line), len(new))
+            result += without_columns(new[:length], old[0])
+            old, new = old[length:], new[length:]
+        elif new:
+            old.pop(0)
+            result.append(new.pop(0))
+        else:
+            break
+    return "\n".join(result if "..." in result[-1:] else result + new) + "\n"
+
+
+class Runner:
+    """Runs examples in a folder that has the folders of the repository, and frond on its path."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        for name in ("scenes", "tests", "examples", "scripts", "src", "python", "docs"):
+            (self.folder / name).symlink_to(ROOT / name)
+        (self.folder / "planted.so").symlink_to(BUILD / "tests" / "plugins" / "planted.so")
+        self.environment = {**os.environ, "PATH": f"{FROND.parent}:{os.environ['PATH']}"}
+
+    def output(self, language, commands):
+        words = ["bash", "-ec", commands] if language == "sh" else [sys.executable, "-c", commands]
+        done = subprocess.run(words, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, timeout=LIMIT_S, check=False)
+        # A broken law or a difference is an answer, with the code 2; 1 is an error.
+        return None if done.returncode not in (0, 2) else done.stdout, done.stdout
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/examples")
+    parser.add_argument("--only", action="append", help="a page in docs")
+    only = parser.parse_args().only
+    failed = []
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        if only and page.name not in only:
+            continue
+        text = page.read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as folder:
+            runner = Runner(folder)
+
+            def renewed(example, page=page, runner=runner):
+                output, said = runner.output(example["language"], example["commands"])
+                if not output:
+                    failed.append(f"{page.name}: {example['commands'].strip()}\n{said}")
+                    return example[0]
+                start, end = (at - example.start() for at in example.span("output"))
+                return example[0][:start] + shortened(example["output"], output) + example[0][end:]
+
+            new = EXAMPLE.sub(renewed, text)
+        if new != text:
+            write(page, new)
+    if failed:
+        raise SystemExit("These examples failed:\n" + "\n".join(failed))
+
+
+main()
