@@ -29,7 +29,7 @@ def without_columns(lines, header):
 
 
 def shortened(old, new):
-    """`new` with the lines and columns left out that `old` leaves out."""
+    """`new` with the lines and columns left out that `old` leaves out; None if the line after those is not in it."""
     old, new, result = old.splitlines(), new.splitlines(), []
     while old:
         if old[0].strip() == "...":
@@ -38,7 +38,9 @@ def shortened(old, new):
                 break
             while new and form(new[0]) != form(old[0]):
                 new.pop(0)
-        elif re.search(r" \.\.\.(  |$)", old[0]):
+            if not new:
+                return None
+        elif re.search(r" {2}\.\.\.( {2}|$)", old[0]):
             length = next((i for i, line in enumerate(new) if not line), len(new))
             result += without_columns(new[:length], old[0])
             old, new = old[length:], new[length:]
@@ -62,10 +64,11 @@ class Runner:
 
     def output(self, language, commands):
         words = ["bash", "-ec", commands] if language == "sh" else [sys.executable, "-c", commands]
-        done = subprocess.run(words, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True, timeout=LIMIT_S, check=False)
+        done = subprocess.run(words, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=LIMIT_S,
+                              check=False)
+        said = re.sub(r" +$", "", done.stdout or done.stderr, flags=re.M)  # the log is shown where there is nothing else
         # A broken law or a difference is an answer, with the code 2; 1 is an error.
-        return None if done.returncode not in (0, 2) else done.stdout, done.stdout
+        return said if done.returncode in (0, 2) else None, done.stderr
 
 
 def main():
@@ -82,11 +85,12 @@ def main():
 
             def renewed(example, page=page, runner=runner):
                 output, said = runner.output(example["language"], example["commands"])
-                if not output:
-                    failed.append(f"{page.name}: {example['commands'].strip()}\n{said}")
+                shown = shortened(example["output"], output) if output else None
+                if not shown:
+                    failed.append(f"{page.name}: {example['commands'].strip()}\n{output or said}")
                     return example[0]
                 start, end = (at - example.start() for at in example.span("output"))
-                return example[0][:start] + shortened(example["output"], output) + example[0][end:]
+                return example[0][:start] + shown + example[0][end:]
 
             new = EXAMPLE.sub(renewed, text)
         if new != text:
