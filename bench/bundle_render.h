@@ -29,16 +29,8 @@ class BundleRender {
   }
 
   void add_bundle() {
-    const RenderJob job{.world = scene_,
-                        .camera = scene_.camera(),
-                        .integrator = scene_.integrator(),
-                        .wavelengths = scene_.wavelengths(),
-                        .filter = scene_.filter(),
-                        .sampler = scene_.sampler(),
-                        .seed = scene_.seed(),
-                        .has_motion = scene_.has_motion()};
     const WorkPlan plan = plan_of(film_, {samples_, samples_ + PathBundle::kMost});
-    const RenderStatistics s = render(job, plan, film_, pool_);
+    const RenderStatistics s = render(job_of(scene_), plan, film_, pool_);
     samples_ += PathBundle::kMost;
     paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
   }

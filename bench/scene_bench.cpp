@@ -28,9 +28,8 @@ class Meter {
   }
 
   void add_bundle() {
-    const RenderJob job{scene_,          scene_.camera(),  scene_.integrator(), scene_.wavelengths(),
-                        scene_.filter(), scene_.sampler(), scene_.seed()};
-    const RenderStatistics s = render(job, plan_of(film_, {samples_, samples_ + PathBundle::kMost}), film_, pool_);
+    const RenderStatistics s =
+        render(job_of(scene_), plan_of(film_, {samples_, samples_ + PathBundle::kMost}), film_, pool_);
     samples_ += PathBundle::kMost;
     paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
   }

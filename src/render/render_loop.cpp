@@ -8,6 +8,7 @@
 #include <mutex>
 #include <new>
 
+#include "scene/scene.h"
 #include "system/machine.h"
 
 namespace frond {
@@ -234,6 +235,22 @@ class Worker {
 };
 
 }  // namespace
+
+RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler, uint64_t seed) {
+  return {.world = scene,
+          .camera = scene.camera(),
+          .integrator = integrator,
+          .wavelengths = scene.wavelengths(),
+          .filter = scene.filter(),
+          .sampler = sampler,
+          .seed = seed,
+          .pixel_jitter = scene.has_pixel_jitter(),
+          .wavelength_jitter = scene.has_wavelength_jitter(),
+          .has_motion = scene.has_motion(),
+          .camera_motion = scene.camera_motion()};
+}
+
+RenderJob job_of(const Scene& scene) { return job_of(scene, scene.integrator(), scene.sampler(), scene.seed()); }
 
 WorkPlan plan_of(const Film& film, SampleRange samples) { return {film.sampled(), samples}; }
 

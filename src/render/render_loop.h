@@ -17,6 +17,8 @@
 
 namespace frond {
 
+class Scene;
+
 /// Pixel coordinates in the whole image.
 struct PixelPosition {
   int x, y;
@@ -39,6 +41,11 @@ struct RenderJob {
   bool has_motion = false;        ///< rays need a time
   const CameraMotion* camera_motion = nullptr;  ///< nullptr: the camera stands still
 };
+
+/// A render of a scene as it is described. The scene must outlive the job.
+RenderJob job_of(const Scene& scene);
+/// The same with another integrator, or other random numbers; these must outlive the job too.
+RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler, uint64_t seed);
 
 /// Samples to render: a range of sample indices for a rectangle of pixels.
 struct WorkPlan {

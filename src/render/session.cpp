@@ -128,20 +128,7 @@ void LoadedScene::check_samples(uint64_t samples) const {
          needed, kLanes, samples);
 }
 
-RenderJob LoadedScene::job() const {
-  return {*scene_,
-          scene_->camera(),
-          scene_->integrator(),
-          scene_->wavelengths(),
-          scene_->filter(),
-          scene_->sampler(),
-          scene_->seed(),
-          {},
-          scene_->has_pixel_jitter(),
-          scene_->has_wavelength_jitter(),
-          scene_->has_motion(),
-          scene_->camera_motion()};
-}
+RenderJob LoadedScene::job() const { return job_of(*scene_); }
 
 RenderPart LoadedScene::empty_part() const {
   Film film(facts_.format, description_.film.where);

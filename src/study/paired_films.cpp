@@ -31,16 +31,9 @@ PairedFilms::PairedFilms(const FilmSettings& film, int exponent, std::array<uint
 }
 
 RenderJob PairedFilms::job(size_t half, const Scene& scene) const {
-  return {.world = scene,
-          .camera = scene.camera(),
-          .integrator = scene.integrator(),
-          .wavelengths = scene.wavelengths(),
-          .filter = scene.filter(),
-          .sampler = *samplers_[half],
-          .seed = seeds_[half],
-          .pixels = pixels_,
-          .has_motion = scene.has_motion(),
-          .camera_motion = scene.camera_motion()};
+  RenderJob job = job_of(scene, scene.integrator(), *samplers_[half], seeds_[half]);
+  job.pixels = pixels_;
+  return job;
 }
 
 void PairedFilms::advance_to(uint64_t samples, const Scene& scene, const ThreadPool& pool, Progress* progress) {

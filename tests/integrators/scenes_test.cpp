@@ -23,9 +23,7 @@ Film render_scene(const std::string& path) {
   apply_overrides(overrides, description, registry, quiet);
   const Scene scene(description, registry, pool, quiet);
   Film film({.settings = scene.film()});
-  const RenderJob job{scene,          scene.camera(),  scene.integrator(), scene.wavelengths(),
-                      scene.filter(), scene.sampler(), scene.seed()};
-  render(job, plan_of(film, {0, 2}), film, pool);
+  render(job_of(scene), plan_of(film, {0, 2}), film, pool);
   return film;
 }
 

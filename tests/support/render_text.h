@@ -33,16 +33,7 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
                   registry, quiet);
   const Scene scene(description, registry, pool, quiet);
   Film film({.settings = scene.film(), .bands = scene.wavelengths().bands().size()});
-  const RenderJob job{.world = scene,
-                      .camera = scene.camera(),
-                      .integrator = scene.integrator(),
-                      .wavelengths = scene.wavelengths(),
-                      .filter = scene.filter(),
-                      .sampler = scene.sampler(),
-                      .seed = scene.seed(),
-                      .has_motion = scene.has_motion(),
-                      .camera_motion = scene.camera_motion()};
-  const RenderStatistics statistics = render(job, plan_of(film, {0, uint64_t(settings.samples)}), film, pool);
+  const RenderStatistics statistics = render(job_of(scene), plan_of(film, {0, uint64_t(settings.samples)}), film, pool);
   if (settings.statistics) *settings.statistics = statistics;
   return film;
 }

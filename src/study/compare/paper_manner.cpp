@@ -54,15 +54,7 @@ class CutoffRenders {
   PathEnds ends_with(double cutoff) const {
     const auto integrator = study_.integrator(*scene_, with_end(integrator_, cutoff, PathEnds::kDepths - 1));
     Film film({.settings = study_.film(), .bands = scene_->wavelengths().bands().size()});
-    const RenderJob job{.world = *scene_,
-                        .camera = scene_->camera(),
-                        .integrator = *integrator,
-                        .wavelengths = scene_->wavelengths(),
-                        .filter = scene_->filter(),
-                        .sampler = *sampler_,
-                        .seed = study_.seed(),
-                        .has_motion = scene_->has_motion(),
-                        .camera_motion = scene_->camera_motion()};
+    const RenderJob job = job_of(*scene_, *integrator, *sampler_, study_.seed());
     return render(job, plan_of(film, {0, samples_}), film, study_.session().pool()).ends;
   }
 
