@@ -232,7 +232,7 @@ walks and hero wavelengths twice with {reference_samples}, with seeds that no pi
 {errors}
 **{missed} of {choices} selections missed the request**: the lower bound of their measured bias is above it. The specified rate is
 at most 1 in 20. {met} selections met the request at the upper bound as well; for {unclear} the check was inconclusive. In {unmet}
-of {cases} rows no cheaper option was shown to meet the request, and `leaf_solved` with `hero` was selected. `abm` was selected in
+of {cases} rows no cheaper alternative was shown to meet the request, and `leaf_solved` with `hero` was selected. `abm` was selected in
 {walks} rows.
 Of {full} renders with the number of samples that was reported to be needed, {exceeded} had an RMS above the request; the largest
 was {largest:.2f} times the request: the pilot has pixels that share no samples, whose noise falls faster than that of the default,

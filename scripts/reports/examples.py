@@ -4,6 +4,7 @@ import argparse
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -57,9 +58,11 @@ class Runner:
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
-        for name in ("scenes", "tests", "examples", "scripts", "src", "python", "docs"):
+        shutil.copytree(ROOT / "scenes", self.folder / "scenes")  # examples write beside the scenes
+        for name in ("tests", "docs"):
             (self.folder / name).symlink_to(ROOT / name)
-        (self.folder / "planted.so").symlink_to(BUILD / "tests" / "plugins" / "planted.so")
+        (self.folder / "build").mkdir()
+        (self.folder / "build" / "release").symlink_to(BUILD)
         self.environment = {**os.environ, "PATH": f"{FROND.parent}:{os.environ['PATH']}"}
 
     def output(self, language, commands):

@@ -119,8 +119,8 @@ def page(rows, z, curves):
 transmittance {LEAF_T}, over soil of reflectance {SOIL}, sun at {SUN}°. The solution is by doubling (`scripts/reports/turbid.py`, which
 shares no code with frond). Differences from it in per cent, with standard errors: the medium `turbid` by `volpath`, and disks of two
 radii by `path`, the mean of {DRAWS} draws. The medium's largest difference is {z:.1f} standard errors. At the direction
-of the sun itself (−{SUN}°) disks are brighter by a third at either radius: there a view sees the lit side of each leaf that it meets,
-which a medium does not know of. The errors of disks are estimated from so few draws.
+of the sun itself (−{SUN}°) disks are brighter by a third at either radius: the hot spot of
+leaves of finite size, which the medium does not model. The errors of disks are estimated from so few draws.
 
 {table(("view zenith", "solution", "medium", *(f"disks of {100 * r:g} cm" for r, _ in DISKS)), rows)}
 **Noise and cost.** The bodies of the [gallery](gallery.md#medium) at {SIZE} × {SIZE} pixels with hero wavelengths; RMS error of the green channel

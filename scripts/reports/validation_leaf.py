@@ -232,7 +232,8 @@ def f_against_sample(report):
                      "leaf_simplified,incident=light", "diffusetransmission"):
         for name, law in frond.conform(material, samples=int(float(samples)))["laws"].items():
             if name in ("sampling", "unbiasedness", "energy") and "worst_p" in law:
-                body.append([f"`{material}`", name, law["tests"], f"{law['worst_p']:.2g}", law["verdict"]])
+                p = f"{law['worst_p']:.2g}" if law["tests"] else "–"
+                body.append([f"`{material}`", name, int(law["tests"]), p, law["verdict"]])
     report.add(f"""
 ## `f` against `sample`
 

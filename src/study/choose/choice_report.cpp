@@ -87,7 +87,7 @@ std::string failures_text(const Choice& c) {
 std::string samples_text(const Choice& c) {
   return fmt::format(
       "\n  noise at {} samples per pixel: {} (RMS); noise and bias together reach {} at {}"
-      "\n  CPU time of {} samples per pixel, estimated: {:.2g} s, this pilot included; {:.2g} s with the last options",
+      "\n  CPU time of {} samples per pixel, estimated: {:.2g} s, this pilot included; {:.2g} s with the reference",
       c.samples, error_text(c, c.noise_rms()), error_text(c, c.rms),
       c.samples_needed() > kFirstSamples ? fmt::format("about {:.0f}", c.samples_needed())
                                          : fmt::format("{} or fewer", kFirstSamples),
