@@ -8,6 +8,12 @@ namespace {
 
 using namespace nb::literals;
 
+/// Raises an exception of Python, as if the methods of the object had.
+[[noreturn]] void raise(PyObject* type, const std::string& message) {
+  PyErr_SetString(type, message.c_str());
+  throw nb::python_error();
+}
+
 /// A BSDF that is written in Python: an object of frond.Bsdf. Each call takes the GIL, so that renders of it use one
 /// core. In an arena: the object is kept by whoever made this.
 class PythonBsdf final : public Bsdf {
@@ -19,7 +25,7 @@ class PythonBsdf final : public Bsdf {
       return call();
     } catch (const nb::cast_error&) {
       const std::string name = nb::cast<std::string>(self().type().attr("__name__"));
-      throw nb::type_error(fmt::format("{}.{} returns {}", name, method, needed).c_str());
+      raise(PyExc_TypeError, fmt::format("{}.{} returns {}", name, method, needed));
     }
   }
 
@@ -73,8 +79,8 @@ class PythonBsdf final : public Bsdf {
     const auto values = is_number ? std::vector<float>(size_t(lambda_.count), nb::cast<float>(value))
                                   : nb::cast<std::vector<float>>(value);
     if (values.size() != size_t(lambda_.count))
-      throw nb::value_error(
-          fmt::format("a BSDF is asked at {} wavelengths, and gave {} values", lambda_.count, values.size()).c_str());
+      raise(PyExc_ValueError,
+            fmt::format("a BSDF is asked at {} wavelengths, and gave {} values", lambda_.count, values.size()));
     for (int i = 0; i < lambda_.count; ++i)
       if (lambda_.is_active(i)) s[i] = values[size_t(i)];
     return s;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <new>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "instruments/conformance/conformance.h"
 #include "instruments/cubature.h"
@@ -158,8 +158,8 @@ void check_retired_lanes(const Bsdf& bsdf, const SampledWavelengths& lambda, con
 void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
 void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
 
-/// Runs `test`. An exception that a BSDF or a material throws becomes a finding of Law::values; Stopped and a lack of
-/// memory pass through.
+/// Runs `test`. A logic error, a runtime error or an object that a BSDF or a material throws becomes a finding of
+/// Law::values. InputError, Stopped and other exceptions, such as those of a caller's Python code, pass through.
 template <class Test>
 void run_guarded(const std::string& where, Findings& findings, const Test& test) {
   const auto report = [&](const std::string& message) {
@@ -169,10 +169,14 @@ void run_guarded(const std::string& where, Findings& findings, const Test& test)
     test();
   } catch (const Stopped&) {
     throw;
-  } catch (const std::bad_alloc&) {
+  } catch (const InputError&) {
     throw;
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error& error) {
     report(fmt::format("an exception is thrown: {}", error.what()));
+  } catch (const std::logic_error& error) {
+    report(fmt::format("an exception is thrown: {}", error.what()));
+  } catch (const std::exception&) {
+    throw;
   } catch (...) {
     report("an object that is no std::exception is thrown");
   }
