@@ -141,8 +141,8 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
     compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume. Repeatable.
-    reference: Reference leaf model of compare. Default: leaf_solved.
-    within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02.
+    reference: Reference leaf model of compare. Default: leaf_solved. Needs compare.
+    within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02. Needs compare.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
@@ -169,11 +169,11 @@ def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str |
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
-    paths: Number of light paths. Default: 1e6.
+    paths: Number of light paths; at least 32 for each wavelength are traced. Default: 1e6.
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
-    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, or scene: that of the scene's lights, which have to be in W/(m2 nm), as those of the light sky. Unit: W/(m2 nm). Default: solar-am1.5-global.
+    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, or scene: that of the scene's light sky. Unit: W/(m2 nm). Default: solar-am1.5-global.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
@@ -188,7 +188,7 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequenc
     """Measure a material's reflectance, transmittance and absorptance.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9.
@@ -207,7 +207,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
     Measure a material's BRDF and BTDF over the whole sphere.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement. Default: 1e6.
