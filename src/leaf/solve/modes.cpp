@@ -1,6 +1,6 @@
 #include "leaf/solve/modes.h"
 
-#include <cassert>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -56,12 +56,14 @@ class Port {
   VectorXd kept_;
 };
 
-/// Cosines of the directions inside that refract into those of the given sines.
+/// Cosines of the directions inside that refract into those of the given sines. The last node of a grid lies beyond the
+/// horizon, for interpolation below it; where the index is too low for a direction inside, the most grazing one is
+/// taken.
 VectorXd inner_cosines(std::span<const double> sines, double n) {
   VectorXd mu(static_cast<Index>(sines.size()));
   for (Index i = 0; i < mu.size(); ++i) {
-    const double sine = sines[static_cast<size_t>(i)] / n;
-    assert(std::abs(sine) < 1);
+    constexpr double kMost = 0.9999;
+    const double sine = std::clamp(sines[static_cast<size_t>(i)] / n, -kMost, kMost);
     mu[i] = std::sqrt(1 - sine * sine);
   }
   return mu;
