@@ -21,7 +21,7 @@ def form(line):
 
 
 def without_columns(lines, header):
-    """Lines of a table of right-aligned columns, less those for which `...` stands in the documented header."""
+    """The lines of a table of right-aligned columns, with `...` in place of the columns that the documented header omits."""
     fields = re.split(r" {2,}", header.strip())
     before, after = fields.index("..."), len(fields) - fields.index("...") - 1
     found = [m.end() for m in re.finditer(r"\S+(?: \S+)*", lines[0])]
