@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -62,7 +63,9 @@ struct SampledWavelengths {
   bool is_active(int lane) const { return active[static_cast<size_t>(lane)]; }
   /// Deactivates the lanes in which `throughput` is 0.
   void retire_black_lanes(const SampledSpectrum& throughput) {
-    for (size_t i = 0; i < kLanes; ++i) active[i] = active[i] && throughput.v[i] != 0;
+    using Byte4 = signed char __attribute__((vector_size(4)));
+    const Byte4 kept = __builtin_convertvector(throughput.v != 0, Byte4);
+    active = std::bit_cast<std::array<bool, kLanes>>(std::bit_cast<Byte4>(active) & kept);
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -38,18 +39,31 @@ struct Path {
   VertexKey key;                     ///< of the current vertex
 };
 
-/// Indices of paths in a bundle, ascending.
-class LaneList {
+/// Set of paths of a bundle, by index.
+class LaneSet {
  public:
-  void add(size_t lane) { lanes_[count_++] = uint8_t(lane); }
-  bool empty() const { return count_ == 0; }
-  size_t size() const { return count_; }
-  const uint8_t* begin() const { return lanes_.data(); }
-  const uint8_t* end() const { return lanes_.data() + count_; }
+  explicit LaneSet(uint32_t bits = 0) : bits_(bits) {}
+  void add(size_t lane) { bits_ |= 1u << lane; }
+  bool empty() const { return bits_ == 0; }
+  size_t size() const { return size_t(std::popcount(bits_)); }
+  uint32_t bits() const { return bits_; }
+
+  /// Ascending.
+  class Iterator {
+   public:
+    explicit Iterator(uint32_t left) : left_(left) {}
+    size_t operator*() const { return size_t(std::countr_zero(left_)); }
+    void operator++() { left_ &= left_ - 1; }
+    bool operator!=(Iterator other) const { return left_ != other.left_; }
+
+   private:
+    uint32_t left_;
+  };
+  Iterator begin() const { return Iterator(bits_); }
+  Iterator end() const { return Iterator(0); }
 
  private:
-  std::array<uint8_t, PathBundle::kMost> lanes_;
-  size_t count_ = 0;
+  uint32_t bits_;
 };
 
 /// Traces the paths of a bundle together, one vertex after the other.
@@ -67,24 +81,23 @@ class PathTracer final : public Tracer {
 
  private:
   static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
+  static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
 
   void trace() {
-    LaneList alive = begin();
+    LaneSet alive = begin();
     for (vertex_ = 0; !alive.empty(); ++vertex_) {
-      const LaneList met = vertex_ == 0 ? meet_first(alive) : meet(alive);
+      const LaneSet met = vertex_ == 0 ? meet_first(alive) : meet(alive);
       arena_.reset();
-      LaneList passed;
-      const LaneList scattering = look(met, passed);
+      LaneSet passed;
+      const LaneSet scattering = look(met, passed);
       if (settings_.sample_lights && !selector_.empty()) add_sampled_lights(scattering);
       alive = scatter(scattering, passed);
     }
   }
 
-  LaneList begin() {
-    LaneList lanes;
-    for (size_t i = 0; i < kMost; ++i) {
-      if (!(bundle_->wanted >> i & 1)) continue;
-      lanes.add(i);
+  LaneSet begin() {
+    const LaneSet lanes(bundle_->wanted);
+    for (const size_t i : lanes) {
       Path& path = paths_[i];
       path.ray = bundle_->rays[i];
       path.lambda = bundle_->lambda[i];
@@ -110,12 +123,11 @@ class PathTracer final : public Tracer {
 
   /// Intersects camera rays in packets, whose rays do not depend on which results are wanted: a sample does not depend
   /// on which other samples are rendered.
-  LaneList meet_first(const LaneList& alive) {
+  LaneSet meet_first(const LaneSet& alive) {
     uint32_t hits = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
-      constexpr uint32_t kAll = (1u << kWidth) - 1;
-      if ((bundle_->wanted >> first & kAll) == 0) continue;
-      const RayPacket packet{&bundle_->rays[first], &bundle_->keys[first], bundle_->lanes >> first & kAll};
+      if ((bundle_->wanted >> first & kPacket) == 0) continue;
+      const RayPacket packet{&bundle_->rays[first], &bundle_->keys[first], bundle_->lanes >> first & kPacket};
       hits |= world_.intersect(packet, &points_[first]) << first;
     }
     bundle_->traced += alive.size();
@@ -123,7 +135,7 @@ class PathTracer final : public Tracer {
   }
 
   /// Intersects the next rays one by one, since they are incoherent.
-  LaneList meet(const LaneList& alive) {
+  LaneSet meet(const LaneSet& alive) {
     uint32_t hits = 0;
     for (const size_t i : alive)
       if (world_.intersect(paths_[i].ray, key_of(i).of(Use::ray), points_[i])) hits |= 1u << i;
@@ -132,23 +144,18 @@ class PathTracer final : public Tracer {
   }
 
   /// Returns the paths that hit a surface; the others receive the environment's radiance and end.
-  LaneList after_rays(const LaneList& alive, uint32_t hits) {
-    LaneList met;
-    for (const size_t i : alive) {
-      if (hits >> i & 1) {
-        met.add(i);
-        continue;
-      }
+  LaneSet after_rays(const LaneSet& alive, uint32_t hits) {
+    for (const size_t i : LaneSet(alive.bits() & ~hits)) {
       add_environment(i);
       bundle_->results[i].escaped = true;
     }
-    return met;
+    return LaneSet(alive.bits() & hits);
   }
 
   /// Adds emission and evaluates materials. Returns the paths that may be scattered; a path that hits an invisible
   /// surface goes to `passed`.
-  LaneList look(const LaneList& met, LaneList& passed) {
-    LaneList scattering;
+  LaneSet look(const LaneSet& met, LaneSet& passed) {
+    LaneSet scattering;
     for (const size_t i : met) {
       const SurfacePoint& point = points_[i];
       at_ = &point;
@@ -217,7 +224,7 @@ class PathTracer final : public Tracer {
   };
 
   /// Adds light samples, at the first vertex of each path as many as the settings say.
-  void add_sampled_lights(const LaneList& lanes) {
+  void add_sampled_lights(const LaneSet& lanes) {
     // Random numbers that no light of the scene uses are not generated.
     if (selector_.has_choice()) draw(lanes, Number::light, numbers_);
     if (selector_.has_extent()) draw(lanes, Number::on_light, pairs_);
@@ -234,8 +241,8 @@ class PathTracer final : public Tracer {
     add_light_samples(lanes, Use::second_light_bsdf, Use::second_shadow_ray);
   }
 
-  void add_light_samples(const LaneList& lanes, Use bsdf, Use shadow_ray) {
-    LaneList lit;
+  void add_light_samples(const LaneSet& lanes, Use bsdf, Use shadow_ray) {
+    LaneSet lit;
     bool alike = vertex_ == 0;
     for (const size_t i : lanes) {
       const SurfacePoint& point = points_[i];
@@ -272,12 +279,11 @@ class PathTracer final : public Tracer {
     at_ = nullptr;
     bundle_->traced += lit.size();
     const uint32_t dark = alike ? occluded_alike(lit) : occluded(lit);
-    for (const size_t i : lit)
-      if (!(dark >> i & 1)) add(i, *lit_[i].light, lit_[i].radiance, lit_[i].weight);
+    for (const size_t i : LaneSet(lit.bits() & ~dark)) add(i, *lit_[i].light, lit_[i].radiance, lit_[i].weight);
   }
 
   /// Returns the mask of the occluded paths: shadow rays one by one.
-  uint32_t occluded(const LaneList& lit) const {
+  uint32_t occluded(const LaneSet& lit) const {
     uint32_t dark = 0;
     for (const size_t i : lit)
       if (world_.occluded(shadow_rays_[i], shadow_keys_[i])) dark |= 1u << i;
@@ -285,12 +291,10 @@ class PathTracer final : public Tracer {
   }
 
   /// The same in packets, for coherent rays: toward delta or nearby lights, or mostly to a sun, from the first hit.
-  uint32_t occluded_alike(const LaneList& lit) const {
+  uint32_t occluded_alike(const LaneSet& lit) const {
     uint32_t dark = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
-      RayPacket packet{&shadow_rays_[first], &shadow_keys_[first]};
-      for (const size_t i : lit)
-        if (i >= first && i < first + kWidth) packet.lanes |= 1u << (i - first);
+      const RayPacket packet{&shadow_rays_[first], &shadow_keys_[first], lit.bits() >> first & kPacket};
       if (packet.lanes != 0) dark |= world_.occluded(packet) << first;
     }
     return dark;
@@ -321,11 +325,10 @@ class PathTracer final : public Tracer {
   }
 
   /// Samples the next directions. Returns the paths that continue, including those in `passed`.
-  LaneList scatter(const LaneList& lanes, const LaneList& passed) {
+  LaneSet scatter(const LaneSet& lanes, const LaneSet& passed) {
     draw(lanes, Number::lobe, numbers_);
     draw(lanes, Number::direction, pairs_);
-    uint32_t alive = 0;
-    for (const size_t i : passed) alive |= 1u << i;
+    LaneSet alive = passed;
     for (const size_t i : lanes) {
       Path& path = paths_[i];
       at_ = &points_[i];
@@ -334,13 +337,10 @@ class PathTracer final : public Tracer {
                                                         path.key.of(Use::albedo), arena_);
       if (!scatter(i, points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path) || ends(path)) continue;
       bundle_->results[i].scatterings = ++path.depth;
-      alive |= 1u << i;
+      alive.add(i);
     }
     at_ = nullptr;
-    LaneList next;
-    for (size_t i = 0; i < kMost; ++i)
-      if (alive >> i & 1) next.add(i);
-    return next;
+    return alive;
   }
 
   /// Returns false if nothing is scattered.
@@ -394,7 +394,7 @@ class PathTracer final : public Tracer {
 
   /// Draws the sampler's numbers for these paths; for the whole bundle if that is as fast.
   template <class T>
-  void draw(const LaneList& lanes, Number number, std::array<T, kMost>& u) const {
+  void draw(const LaneSet& lanes, Number number, std::array<T, kMost>& u) const {
     constexpr size_t kFew = 4;
     const uint32_t dimension = bundle_->dimension + uint32_t(vertex_) * uint32_t(Number::count) + uint32_t(number);
     if (lanes.size() > kFew) return get(bundle_->samples, dimension, u.data());

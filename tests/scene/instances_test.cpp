@@ -309,6 +309,34 @@ Rotate 30 0 0 1 Shape "instances" "string object" "shoot" "string filename" "pla
   EXPECT_EQ(instances->geometry().instances(), 4u);
 }
 
+// Meshes of few triangles beside instances are scenes of their own within Embree's; those of many are not.
+TEST_F(Instances, SmallMeshesBesideThemAreMetAsLargeOnesAre) {
+  const std::string world = "ObjectBegin \"leaf\" " + leaf_shapes() + R"(ObjectEnd
+Shape "trianglemesh" "point3 P" [-4 -4 -1  4 -4 -1  4 4 -1  -4 4 -1] "integer indices" [0 1 2  0 2 3]
+Shape "trianglemesh" "point3 P" [-4 2 -1  4 2 -1  4 3 2] "integer indices" [0 1 2] "float alpha" .5
+ObjectInstance "leaf"
+AttributeBegin Translate 2 0 0 Rotate 40 1 2 3 ObjectInstance "leaf" AttributeEnd
+)";
+  std::string far_away = "Shape \"trianglemesh\" \"point3 P\" [900 0 0  901 0 0  900 1 0] \"integer indices\" [";
+  for (int i = 0; i < 100; ++i) far_away += " 0 1 2";
+  const auto small = scene(world), large = scene(world + far_away + "]");
+  int hits = 0;
+  for_each_ray([&](const Ray& ray, uint64_t key) {
+    SurfacePoint a, b;
+    const bool is_hit = small->intersect(ray, key, a);
+    EXPECT_EQ(is_hit, large->intersect(ray, key, b));
+    EXPECT_EQ(is_hit, small->occluded(ray, key));
+    EXPECT_EQ(is_hit, large->occluded(ray, key));
+    if (!is_hit) return;
+    ++hits;
+    EXPECT_EQ(a.hit.p, b.hit.p);
+    EXPECT_EQ(a.instance_id, b.instance_id);
+  });
+  EXPECT_GT(hits, 1000) << "the test has lost its power";
+  expect_same_in_packets(*small);
+  expect_same_in_packets(*large);
+}
+
 /// Which instance stands at each place of a row along x, as seen from above.
 std::vector<uint64_t> ids_seen(const Scene& scene, int count) {
   std::vector<uint64_t> ids;

@@ -124,6 +124,31 @@ RTCGeometry analytic_geometry(RTCDevice device, const Surface& surface) {
   return geometry;
 }
 
+/// Embree's callbacks for a scene within a scene: traversal continues in it, with the same ray.
+struct SceneCallbacks {
+  static RTCScene scene(void* data) { return static_cast<RTCScene>(data); }
+
+  static void bounds(const RTCBoundsFunctionArguments* args) {
+    rtcGetSceneBounds(scene(args->geometryUserPtr), args->bounds_o);
+  }
+  static void intersect(const RTCIntersectFunctionNArguments* args) {
+    const RTCScene inner = scene(args->geometryUserPtr);
+    Query& query = query_of(args->context);
+    if (args->N == RayPacket::kWidth)
+      embree::intersect(args->valid, inner, *reinterpret_cast<RTCRayHit8*>(args->rayhit), query);
+    else if (args->valid[0])
+      embree::intersect(inner, *reinterpret_cast<RTCRayHit*>(args->rayhit), query);
+  }
+  static void occluded(const RTCOccludedFunctionNArguments* args) {
+    const RTCScene inner = scene(args->geometryUserPtr);
+    Query& query = query_of(args->context);
+    if (args->N == RayPacket::kWidth)
+      embree::occluded(args->valid, inner, *reinterpret_cast<RTCRay8*>(args->ray), query);
+    else if (args->valid[0])
+      embree::occluded(inner, *reinterpret_cast<RTCRay*>(args->ray), query);
+  }
+};
+
 }  // namespace
 
 std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
@@ -157,6 +182,17 @@ RTCGeometry new_geometry(RTCDevice device, const Surface& surface) {
   RTCGeometry geometry = std::holds_alternative<MeshPtr>(surface.geometry) ? mesh_geometry(device, surface)
                                                                            : analytic_geometry(device, surface);
   rtcSetGeometryUserData(geometry, const_cast<Surface*>(&surface));
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+RTCGeometry new_geometry(RTCDevice device, RTCScene scene) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryBoundsFunction(geometry, SceneCallbacks::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, SceneCallbacks::intersect);
+  rtcSetGeometryOccludedFunction(geometry, SceneCallbacks::occluded);
+  rtcSetGeometryUserData(geometry, scene);
   rtcCommitGeometry(geometry);
   return geometry;
 }

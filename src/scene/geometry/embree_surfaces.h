@@ -12,6 +12,10 @@ namespace frond::embree {
 /// Returns an Embree geometry of a surface, which must outlive it. Queries must use the context Query.
 RTCGeometry new_geometry(RTCDevice device, const Surface& surface);
 
+/// Returns an Embree geometry whose single primitive is a committed scene, which must outlive it. Hits keep the scene's
+/// geometry IDs.
+RTCGeometry new_geometry(RTCDevice device, RTCScene scene);
+
 inline Ray to_ray(const RTCRay& r) {
   return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar, r.time};
 }

@@ -139,6 +139,19 @@ float along_normal(const Vec3& extent, const Vec3& ng) {
   return std::min(dot(n, extent), largest_coordinate(extent));
 }
 
+/// Embree builds one tree of triangles and another one of all else, and each ray visits both. A ground or a wall among
+/// instances is better one more element of the second tree (docs/internals.md, "Instances").
+bool has_small_meshes_beside_others(const ObjectParts& parts) {
+  constexpr size_t kMostTriangles = 64;
+  size_t meshes = 0, triangles = 0;
+  for (const Surface& surface : parts.surfaces)
+    if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
+      ++meshes;
+      triangles += (*mesh)->triangles.size();
+    }
+  return triangles <= kMostTriangles && (meshes < parts.surfaces.size() || !parts.instances.empty());
+}
+
 }  // namespace
 
 void embree::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
@@ -166,13 +179,18 @@ void Geometry::check() const {
          error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
 }
 
+embree::Scene Geometry::new_scene() const {
+  embree::Scene scene(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // avoids missed hits between adjacent triangles
+  return scene;
+}
+
 /// Builds one object's Embree scene. `first_id` is 1 if the object has surfaces of its own.
 std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t first_id) {
   auto object = std::make_unique<GeometryObject>(GeometryObject{.parts = std::move(parts)});
   if (!object->parts.instances.empty()) object->ids = first_id;
-  object->scene.reset(rtcNewScene(device_.get()));
+  object->scene = new_scene();
   RTCScene scene = object->scene.get();
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // avoids missed hits between adjacent triangles
   attach(*object);
   rtcCommitScene(scene);
   check();
@@ -192,7 +210,18 @@ void Geometry::attach(GeometryObject& object) {
     rtcAttachGeometryByID(object.scene.get(), geometry, id++);
     rtcReleaseGeometry(geometry);
   };
-  for (const Surface& surface : object.parts.surfaces) add(embree::new_geometry(device_.get(), surface));
+  const bool nests = has_small_meshes_beside_others(object.parts);
+  for (const Surface& surface : object.parts.surfaces) {
+    RTCGeometry geometry = embree::new_geometry(device_.get(), surface);
+    if (nests && std::holds_alternative<MeshPtr>(surface.geometry)) {
+      const RTCScene inner = object.small_meshes.emplace_back(new_scene()).get();
+      rtcAttachGeometryByID(inner, geometry, id);
+      rtcReleaseGeometry(geometry);
+      rtcCommitScene(inner);
+      geometry = embree::new_geometry(device_.get(), inner);
+    }
+    add(geometry);
+  }
   if (object.parts.instances.empty()) return;
   for (const Instances& instances : object.parts.instances) {
     GeometryInstances set{.instances = instances, .objects = {}, .first_id = object.ids};

@@ -38,6 +38,7 @@ struct GeometryInstances {
 struct GeometryObject {
   ObjectParts parts;
   std::vector<GeometryInstances> instances = {};
+  std::vector<embree::Scene> small_meshes = {};  ///< scenes within `scene`: Geometry::attach
   embree::Scene scene = {};
   Bounds bounds = {};              ///< slightly enlarged, for rounding errors
   std::vector<Vec3> outline = {};  ///< the object lies within the convex hull of these points

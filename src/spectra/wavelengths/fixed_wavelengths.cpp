@@ -1,5 +1,7 @@
 #include "spectra/wavelengths/fixed_wavelengths.h"
 
+#include <bit>
+
 namespace frond {
 namespace {
 
@@ -17,7 +19,8 @@ class KnownSpectrum final : public Spectrum {
   Interval range_nm() const override { return spectrum_->range_nm(); }
   float max_value() const override { return spectrum_->max_value(); }
   SampledSpectrum sample(const SampledWavelengths& lambda) const override {
-    return lambda.nm == known_.nm && lambda.count == known_.count ? values_ : spectrum_->sample(lambda);
+    const bool known = are_equal(std::bit_cast<Float4>(lambda.nm), std::bit_cast<Float4>(known_.nm));
+    return known && lambda.count == known_.count ? values_ : spectrum_->sample(lambda);
   }
 
  private:
