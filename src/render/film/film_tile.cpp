@@ -177,6 +177,11 @@ void FilmTile::clear(const Crop& pixels) {
   coverage_ = {};
 }
 
+struct FilmTile::SplatSample {
+  SplatValue value;
+  const Sample* sample;
+};
+
 void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sample> samples, const SplatKernel* kernel) {
   if (samples.size() > kAtOnce) {
     add(format, x, y, samples.first(kAtOnce), kernel);
@@ -187,7 +192,8 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
   Pixel& pixel = pixels_[at];
   const Exposure exposure(format);
   ModestSums modest;
-  SplatSums splats(kernel);
+  std::array<SplatSample, kAtOnce> splats;
+  size_t splat_count = 0;
   for (const Sample& sample : samples) {
     Double4 value;
     const bool is_kept = exposure.expose(sample, value);
@@ -206,16 +212,10 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
         pixel.square[i].add(value[i] * value[i]);
       }
     }
-    if (!kernel) continue;
-    const SplatValue splat(value);
-    if (splats.exponent() != splat.exponent) {
-      if (splats.exponent()) add_splats(x, y, splats);
-      splats.restart(splat.exponent);
-    }
-    splats.add(sample.place, splat);
+    if (kernel) splats[splat_count++] = {SplatValue(value), &sample};
   }
-  if (splats.exponent()) add_splats(x, y, splats);
   modest.add_to(pixel);
+  if (kernel) add_splats(x, y, *kernel, std::span(splats).first(splat_count));
 }
 
 void FilmTile::add_bands(size_t at, const SensorResponse& sensor, const Double4& value) {
@@ -237,6 +237,21 @@ void FilmTile::for_each_reached(int x, int y, const Each& each) {
   for (int py = std::max(top, reached_.y0); py < end_y; ++py)
     for (int px = std::max(left, reached_.x0); px < end_x; ++px)
       each(reached_index(px, py), size_t(px - left), size_t(py - top));
+}
+
+/// Adds the samples of each exponent together; black ones with those of the first. Sums are exact in any order.
+void FilmTile::add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples) {
+  SplatSums sums(&kernel);
+  for (auto begin = samples.begin(); begin != samples.end();) {
+    const auto bright = std::find_if(begin, samples.end(), [](const SplatSample& s) { return !s.value.is_black; });
+    const int exponent = (bright == samples.end() ? begin : bright)->value.exponent;
+    const auto end = std::partition(begin, samples.end(), [exponent](const SplatSample& s) {
+      return s.value.is_black || s.value.exponent == exponent;
+    });
+    sums.restart(exponent);
+    for (; begin != end; ++begin) sums.add(begin->sample->place, begin->value);
+    add_splats(x, y, sums);
+  }
 }
 
 void FilmTile::add_splats(int x, int y, const SplatSums& sums) {

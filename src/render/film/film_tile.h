@@ -174,6 +174,8 @@ class FilmTile {
 
   bool shares_samples() const { return reach_x_ >= 0; }
   void add_features(size_t at, const FilmTile& other, size_t from);
+  struct SplatSample;
+  void add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples);
   void add_splats(int x, int y, const SplatSums& sums);
   void add_bands(size_t at, const SensorResponse& sensor, const Double4& value);
   void add_band_splats(int x, int y, const SensorResponse& sensor, const Double4& exposed,

@@ -120,23 +120,21 @@ SplatValue::SplatValue(const Double4& values) : exponent(kLeastExponent) {
   const double scale = double(1 << kBits) / bound;
   constexpr double kRounds = 0x1.8p52;
   multiples = values * scale + kRounds - kRounds;
+  is_black = multiples[0] == 0 && multiples[1] == 0 && multiples[2] == 0;
 }
 
 void SplatSums::restart(int exponent) {
   exponent_ = exponent;
-  std::fill_n(sums_.begin(), kernel_->width() * kernel_->height(), Sums{});
+  std::fill_n(sums_.begin(), kernel_->width() * kernel_->height(), Double4{});
 }
 
 void SplatSums::add(Vec2 u, const SplatValue& value) {
   const SplatKernel::Weights weights = kernel_->at(u);
-  const Double2 red_green{value.multiples[0], value.multiples[1]}, blue_weight{value.multiples[2], 1};
-  Sums* sums = sums_.data();
+  const Double4 colors_and_one{value.multiples[0], value.multiples[1], value.multiples[2], 1};
+  Double4* sum = sums_.data();
   for (size_t row = 0; row < size_t(kernel_->height()); ++row)
-    for (size_t column = 0; column < size_t(kernel_->width()); ++column, ++sums) {
-      const auto weight = double(weights.at(column, row));
-      sums->red_green += red_green * weight;
-      sums->blue_weight += blue_weight * weight;
-    }
+    for (size_t column = 0; column < size_t(kernel_->width()); ++column, ++sum)
+      *sum += colors_and_one * double(weights.at(column, row));
 }
 
 bool splats(const Filter& filter) {

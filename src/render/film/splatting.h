@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/film.h"
@@ -120,10 +119,12 @@ struct SplatValue {
   static constexpr int kBits = 26;
   static constexpr int kLeastExponent = -14, kStep = 4;
 
+  SplatValue() = default;  // leaves the members uninitialized, for arrays
   explicit SplatValue(const Double4& values);
 
   int exponent;       ///< kLeastExponent + n kStep; all values are below 2^exponent
   Double4 multiples;  ///< integers of at most 2^26 in magnitude
+  bool is_black;      ///< all values are rounded to 0, and so they are with any other exponent
 
   /// Converts a sum of multiples times weights to units of 2^(shift - 60).
   static int64_t whole(double sum) { return static_cast<int64_t>(sum * (1 / double(SplatKernel::kWeightUnit))); }
@@ -139,7 +140,6 @@ class SplatSums {
 
   /// Resets the sums to 0 and sets the exponent of the samples that follow.
   void restart(int exponent);
-  std::optional<int> exponent() const { return exponent_; }
   /// Adds a sample at the position `u` in its pixel, [0, 1)^2; at most kMost samples between two calls of `restart`.
   void add(Vec2 u, const SplatValue& value);
   static constexpr int kMost = 64;
@@ -148,24 +148,18 @@ class SplatSums {
   /// Sum of a colour, in units of 2^(shift - 60), and sum of weights, in units of 2^-30, of the pixel in this column
   /// and row, which are 0 at the offset -reach.
   int64_t sum(size_t column, size_t row, size_t color) const {
-    const Sums& sums = sums_[at(column, row)];
-    return SplatValue::whole(color < 2 ? sums.red_green[color] : sums.blue_weight[0]);
+    return SplatValue::whole(sums_[at(column, row)][color]);
   }
-  int shift() const { return *exponent_ - SplatValue::kLeastExponent; }
-  int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)].blue_weight[1] * 0x1p30); }
+  int shift() const { return exponent_ - SplatValue::kLeastExponent; }
+  int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)][3] * 0x1p30); }
 
  private:
-  /// Sums of three colours times weights and of weights, as two SIMD registers of two doubles.
-  using Double2 = double __attribute__((vector_size(16)));
-  struct Sums {
-    Double2 red_green, blue_weight;
-  };
-
   size_t at(size_t column, size_t row) const { return row * size_t(kernel_->width()) + column; }
 
   const SplatKernel* kernel_;
-  std::optional<int> exponent_;
-  std::array<Sums, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
+  int exponent_ = 0;
+  /// Sums of three colours times weights, and of weights.
+  std::array<Double4, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
 };
 
 /// True if the scene states splatting for the filter, or states nothing and splatting has less noise than importance
