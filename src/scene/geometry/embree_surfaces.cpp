@@ -132,7 +132,7 @@ struct SceneCallbacks {
     rtcGetSceneBounds(scene(args->geometryUserPtr), args->bounds_o);
   }
   static void intersect(const RTCIntersectFunctionNArguments* args) {
-    const RTCScene inner = scene(args->geometryUserPtr);
+    RTCScene inner = scene(args->geometryUserPtr);
     Query& query = query_of(args->context);
     if (args->N == RayPacket::kWidth)
       embree::intersect(args->valid, inner, *reinterpret_cast<RTCRayHit8*>(args->rayhit), query);
@@ -140,7 +140,7 @@ struct SceneCallbacks {
       embree::intersect(inner, *reinterpret_cast<RTCRayHit*>(args->rayhit), query);
   }
   static void occluded(const RTCOccludedFunctionNArguments* args) {
-    const RTCScene inner = scene(args->geometryUserPtr);
+    RTCScene inner = scene(args->geometryUserPtr);
     Query& query = query_of(args->context);
     if (args->N == RayPacket::kWidth)
       embree::occluded(args->valid, inner, *reinterpret_cast<RTCRay8*>(args->ray), query);

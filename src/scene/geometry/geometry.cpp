@@ -214,7 +214,7 @@ void Geometry::attach(GeometryObject& object) {
   for (const Surface& surface : object.parts.surfaces) {
     RTCGeometry geometry = embree::new_geometry(device_.get(), surface);
     if (nests && std::holds_alternative<MeshPtr>(surface.geometry)) {
-      const RTCScene inner = object.small_meshes.emplace_back(new_scene()).get();
+      RTCScene inner = object.small_meshes.emplace_back(new_scene()).get();
       rtcAttachGeometryByID(inner, geometry, id);
       rtcReleaseGeometry(geometry);
       rtcCommitScene(inner);
