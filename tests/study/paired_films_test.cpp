@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSize = 4;
 
-/// Black lamps side by side, every second one twice as bright, several in each pixel.
+/// Lamps with black surfaces side by side, every second one twice as bright, several in each pixel.
 std::string stripes(const std::string& options) {
   std::string text = fmt::format(R"(
 LookAt 0 0 2  0 0 0  0 1 0

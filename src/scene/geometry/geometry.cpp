@@ -139,8 +139,9 @@ float along_normal(const Vec3& extent, const Vec3& ng) {
   return std::min(dot(n, extent), largest_coordinate(extent));
 }
 
-/// Embree builds one tree of triangles and another one of all else, and each ray visits both. A ground or a wall among
-/// instances is better one more element of the second tree (docs/internals.md, "Instances").
+/// Whether the meshes become scenes of their own. Embree builds one tree of triangles and another one of all else, and
+/// each ray visits both; a ground or a wall takes less time as an element of the second one (docs/internals.md,
+/// "Instances").
 bool has_small_meshes_beside_others(const ObjectParts& parts) {
   constexpr size_t kMostTriangles = 64;
   size_t meshes = 0, triangles = 0;
