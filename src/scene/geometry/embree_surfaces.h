@@ -16,6 +16,13 @@ RTCGeometry new_geometry(RTCDevice device, const Surface& surface);
 /// geometry IDs.
 RTCGeometry new_geometry(RTCDevice device, RTCScene scene);
 
+/// Bounds of a committed scene.
+inline Bounds bounds_of(RTCScene scene) {
+  RTCBounds b;
+  rtcGetSceneBounds(scene, &b);
+  return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+}
+
 inline Ray to_ray(const RTCRay& r) {
   return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar, r.time};
 }
