@@ -24,6 +24,13 @@ constexpr Param kPath[] = {
      .range = {0, 2},
      .doc = "Light samples at the first hit; later hits have one. 0: one or two, whichever has less noise in the same "
             "time; a pilot decides."},
+    {.name = "scatteredrays",
+     .kind = ParamKind::integer,
+     .default_value = 0,
+     .range = {0, 2},
+     .doc = "Rays that the first hit scatters where its surface reflects and transmits light, other than as a mirror; "
+            "later hits scatter one. 0: two if the material returns at least 3/4 of the light, else one; a pilot "
+            "measures it."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
@@ -81,6 +88,44 @@ PathBundle with_other_numbers(PathBundle bundle) {
   return bundle;
 }
 
+/// Materials, by id, that reflect and transmit light and return most of it, where camera rays meet them.
+std::vector<bool> bright_materials(const World& world, const PilotRays& rays) {
+  constexpr uint64_t kPixels = 256;
+  constexpr size_t kStep = 4;  // every fourth camera ray
+  constexpr double kMost = 0.75;
+  struct Mean {
+    double sum = 0;
+    uint64_t count = 0;
+  };
+  std::vector<Mean> albedo;  // by material
+  Arena arena;
+  SurfacePoint point;
+  const SurfacePoint* at = nullptr;
+  with_surface_of_errors(at, [&] {
+    for (uint64_t pixel = 0; pixel < kPixels; ++pixel) {
+      check_stop();
+      const PathBundle bundle = rays.bundle(pixel, 0);
+      for (size_t i = 0; i < bundle.rays.size(); i += kStep) {
+        at = nullptr;
+        if (!world.intersect(bundle.rays[i], bundle.keys[i], point)) continue;
+        at = &point;
+        arena.reset();
+        const Bsdf* bsdf = point.material->evaluate(point.hit, bundle.lambda[i], arena);
+        if (!bsdf || !has_two_sides(*bsdf)) continue;
+        LocalBsdf local;
+        local.set(*bsdf, point.hit, -bundle.rays[i].d);
+        if (albedo.size() <= point.material_id) albedo.resize(point.material_id + 1);
+        Mean& mean_albedo = albedo[point.material_id];
+        mean_albedo.sum += double(mean(local.albedo(1, bundle.keys[i]), bundle.lambda[i]));
+        ++mean_albedo.count;
+      }
+    }
+  });
+  std::vector<bool> bright;
+  for (const Mean& m : albedo) bright.push_back(m.count > 0 && m.sum >= kMost * double(m.count));
+  return bright;
+}
+
 /// Whether two light samples at the first hit have less variance times CPU time than one. What they save is the
 /// variance of direct light for given camera rays: that of whole pixels would show it as well, with more noise.
 bool two_samples_pay(const World& world, const LightSelector& selector, PathSettings settings, const PilotRays& rays) {
@@ -109,20 +154,23 @@ bool two_samples_pay(const World& world, const LightSelector& selector, PathSett
 class PathIntegrator final : public Integrator {
  public:
   explicit PathIntegrator(const Params& p)
-      : settings_{p.integer("maxdepth"),     p.boolean("sampledirect"),
-                  p.integer("lightsamples"), p.string("termination") == "attenuation",
-                  float(p.real("cutoff")),   p.boolean("regularize")},
+      : settings_{.max_depth = p.integer("maxdepth"),
+                  .sample_lights = p.boolean("sampledirect"),
+                  .light_samples = p.integer("lightsamples"),
+                  .scattered_rays = p.integer("scatteredrays"),
+                  .cut_off_attenuation = p.string("termination") == "attenuation",
+                  .cutoff = float(p.real("cutoff")),
+                  .regularizes = p.boolean("regularize"),
+                  .bright = {}},
         strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
 
-  /// Selects the number of light samples at the first vertex.
+  /// Selects the numbers of scattered rays and of light samples at the first vertex.
   void adapt(const World& world, const PilotRays& rays) override {
-    if (settings_.light_samples != 0) return;
-    settings_.light_samples = 1;
-    if (!settings_.sample_lights || !selector_.has_extent()) return;
     try {
-      if (two_samples_pay(world, selector_, settings_, rays)) settings_.light_samples = 2;
+      if (settings_.scattered_rays == 0) settings_.bright = bright_materials(world, rays);
+      adapt_light_samples(world, rays);
     } catch (const SurfaceError&) {
       // The render throws it again, and its caller names the material.
     }
@@ -133,6 +181,13 @@ class PathIntegrator final : public Integrator {
   }
 
  private:
+  void adapt_light_samples(const World& world, const PilotRays& rays) {
+    if (settings_.light_samples != 0) return;
+    settings_.light_samples = 1;
+    if (!settings_.sample_lights || !selector_.has_extent()) return;
+    if (two_samples_pay(world, selector_, settings_, rays)) settings_.light_samples = 2;
+  }
+
   PathSettings settings_;
   LightSelector::Strategy strategy_;
   LightSelector selector_;

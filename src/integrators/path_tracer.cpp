@@ -13,7 +13,17 @@ namespace frond {
 namespace {
 
 /// Uses of random streams at one path vertex.
-enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo, second_shadow_ray, second_light_bsdf };
+enum class Use : uint64_t {
+  ray,
+  shadow_ray,
+  light_bsdf,
+  bsdf,
+  roulette,
+  albedo,
+  second_shadow_ray,
+  second_light_bsdf,
+  second_bsdf,
+};
 
 /// Key of the random numbers of one vertex: of its rays, and of its streams by use.
 struct VertexKey {
@@ -29,9 +39,12 @@ struct Path {
   Ray ray;
   SampledWavelengths lambda;
   SampledSpectrum throughput;
-  /// Density of the last direction, 1/sr, for MIS with light sampling; infinite if no light sample competes.
+  /// Density of the last direction, 1/sr, for MIS with light sampling: the sum over the rays that the last vertex
+  /// scattered; infinite if no light sample competes.
   float scatter_pdf;
   float light_samples;               ///< number of light samples at the last vertex, for MIS
+  float scattered_rays;              ///< number of rays that the current vertex scatters, for MIS
+  float share;                       ///< factor on what the path finds: 1/2 if its first vertex scattered two rays
   float power_factor;                ///< factor by which refraction alone has divided the throughput
   int depth;                         ///< scattering events so far
   bool is_wide;                      ///< one of them was not specular
@@ -72,7 +85,6 @@ class PathTracer final : public Tracer {
   PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings)
       : world_(world), selector_(selector), settings_(settings) {}
 
-  // Each iteration is one vertex of all paths: intersect, add emission, sample lights, sample the BSDF.
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
     at_ = nullptr;
@@ -83,19 +95,34 @@ class PathTracer final : public Tracer {
   static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
   static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
 
+  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones.
   void trace() {
-    LaneSet alive = begin();
-    for (vertex_ = 0; !alive.empty(); ++vertex_) {
-      const LaneSet met = vertex_ == 0 ? meet_first(alive) : meet(alive);
-      arena_.reset();
-      LaneSet passed;
-      const LaneSet scattering = look(met, passed);
-      if (settings_.sample_lights && !selector_.empty()) add_sampled_lights(scattering);
-      alive = scatter(scattering, passed);
-    }
+    branch_ = 0;
+    vertex_ = 0;
+    follow(advance(meet_first(begin())));
+    if (branched_.empty()) return;
+    branch_ = 1;
+    for (const size_t i : branched_) paths_[i] = branches_[i];
+    follow(branched_);
+  }
+
+  /// Traces paths from their second vertex on.
+  void follow(LaneSet alive) {
+    for (vertex_ = 1; !alive.empty(); ++vertex_) alive = advance(meet(alive));
+  }
+
+  /// One vertex of all paths, whose rays have met surfaces: adds emission, samples lights and BSDFs. Returns the paths
+  /// that continue.
+  LaneSet advance(const LaneSet& met) {
+    arena_.reset();
+    LaneSet passed;
+    const LaneSet scattering = look(met, passed);
+    if (settings_.sample_lights && !selector_.empty()) add_sampled_lights(scattering);
+    return scatter(scattering, passed);
   }
 
   LaneSet begin() {
+    branched_ = LaneSet();
     const LaneSet lanes(bundle_->wanted);
     for (const size_t i : lanes) {
       Path& path = paths_[i];
@@ -104,6 +131,8 @@ class PathTracer final : public Tracer {
       path.throughput = SampledSpectrum(1);
       path.scatter_pdf = INFINITY;
       path.light_samples = 1;
+      path.scattered_rays = 1;
+      path.share = 1;
       path.power_factor = 1;
       path.depth = 0;
       path.is_wide = false;
@@ -119,7 +148,10 @@ class PathTracer final : public Tracer {
   }
 
   /// Key of this vertex of a path.
-  VertexKey key_of(size_t lane) const { return {hash_key(bundle_->keys[lane], uint64_t(vertex_))}; }
+  VertexKey key_of(size_t lane) const { return {hash_key(bundle_->keys[lane], place_of_numbers())}; }
+
+  /// Index of this vertex for random numbers. Those of the second branches lie beyond those of any first one.
+  uint64_t place_of_numbers() const { return uint64_t(vertex_) + (uint64_t(branch_) << 21); }
 
   /// Intersects camera rays in packets, whose rays do not depend on which results are wanted: a sample does not depend
   /// on which other samples are rendered.
@@ -147,7 +179,7 @@ class PathTracer final : public Tracer {
   LaneSet after_rays(const LaneSet& alive, uint32_t hits) {
     for (const size_t i : LaneSet(alive.bits() & ~hits)) {
       add_environment(i);
-      bundle_->results[i].escaped = true;
+      if (branch_ == 0) bundle_->results[i].escaped = true;
     }
     return LaneSet(alive.bits() & hits);
   }
@@ -172,15 +204,22 @@ class PathTracer final : public Tracer {
       if (path.depth >= settings_.max_depth) continue;
       if (settings_.regularizes && path.is_wide) bsdf = bsdf->regularized(arena_);
       bsdfs_[i].set(*bsdf, point.hit, -path.ray.d);
+      path.scattered_rays = vertex_ == 0 && scatters_two(point, *bsdf) ? 2 : 1;
       scattering.add(i);
     }
     at_ = nullptr;
     return scattering;
   }
 
+  /// Whether a first vertex scatters two rays.
+  bool scatters_two(const SurfacePoint& point, const Bsdf& bsdf) const {
+    if (settings_.scattered_rays == 2) return has_two_sides(bsdf);
+    return point.material_id < settings_.bright.size() && settings_.bright[point.material_id];
+  }
+
   void add(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
     if (!radiance.is_physical() || !(weight >= 0)) return blame(lane, light);
-    bundle_->results[lane].radiance += paths_[lane].throughput * radiance * weight;
+    bundle_->results[lane].radiance += paths_[lane].throughput * radiance * (weight * paths_[lane].share);
   }
 
   /// The film counts a sample that is not a number, and takes it as black.
@@ -232,14 +271,16 @@ class PathTracer final : public Tracer {
     for (const size_t i : lanes) paths_[i].light_samples = twice ? 2 : 1;
     add_light_samples(lanes, Use::light_bsdf, Use::shadow_ray);
     if (!twice) return;
-    // The second sample is as far as possible from the first.
-    const auto opposite = [](float u) { return u < 0.5f ? u + 0.5f : u - 0.5f; };
     for (const size_t i : lanes) {
       if (selector_.has_choice()) numbers_[i] = opposite(numbers_[i]);
-      pairs_[i] = {opposite(pairs_[i].x), opposite(pairs_[i].y)};
+      pairs_[i] = opposite(pairs_[i]);
     }
     add_light_samples(lanes, Use::second_light_bsdf, Use::second_shadow_ray);
   }
+
+  /// Numbers of a second sample, as far as possible from the first.
+  static float opposite(float u) { return u < 0.5f ? u + 0.5f : u - 0.5f; }
+  static Vec2 opposite(Vec2 u) { return {opposite(u.x), opposite(u.y)}; }
 
   void add_light_samples(const LaneSet& lanes, Use bsdf, Use shadow_ray) {
     LaneSet lit;
@@ -266,6 +307,7 @@ class PathTracer final : public Tracer {
         continue;
       }
       if (f_cos.is_black()) continue;
+      scatter_pdf *= path.scattered_rays;
       const float light_pdf = path.light_samples * sample->pdf * probability;
       const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
       lit_[i].radiance = f_cos * sample->radiance;
@@ -335,28 +377,34 @@ class PathTracer final : public Tracer {
       if (path.depth == 0 && bundle_->albedo_samples > 0)
         bundle_->results[i].first.albedo = first_albedo(points_[i], path.lambda, -path.ray.d, bundle_->albedo_samples,
                                                         path.key.of(Use::albedo), arena_);
-      if (!scatter(i, points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path) || ends(path)) continue;
-      bundle_->results[i].scatterings = ++path.depth;
-      alive.add(i);
+      if (path.scattered_rays == 2) {
+        branches_[i] = path;
+        if (scatter(i, opposite(numbers_[i]), opposite(pairs_[i]), Use::second_bsdf, branches_[i])) branched_.add(i);
+      }
+      if (scatter(i, numbers_[i], pairs_[i], Use::bsdf, path)) alive.add(i);
+      if (branch_ == 0) bundle_->results[i].scatterings = path.depth;
     }
     at_ = nullptr;
     return alive;
   }
 
-  /// Returns false if nothing is scattered.
-  bool scatter(size_t lane, const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) {
+  /// Samples a direction. Returns false if the path ends.
+  bool scatter(size_t lane, float uc, Vec2 u, Use use, Path& path) {
     LocalBsdf::Sample sample;
-    if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
+    if (!bsdfs_[lane].sample(uc, u, path.key.stream(use), sample)) return false;
     if (!is_possible(sample)) {
       blame_material(lane);
       return false;
     }
     path.throughput *= sample.weight;
+    path.share /= path.scattered_rays;
     path.power_factor *= sample.power_factor;
     path.lambda.retire_black_lanes(path.throughput);
     path.is_wide = path.is_wide || !sample.is_specular;
-    path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf;
-    set_ray(hit, sample.wi, path);
+    path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf * path.scattered_rays;
+    set_ray(points_[lane].hit, sample.wi, path);
+    if (ends(path)) return false;
+    ++path.depth;
     return true;
   }
 
@@ -396,7 +444,8 @@ class PathTracer final : public Tracer {
   template <class T>
   void draw(const LaneSet& lanes, Number number, std::array<T, kMost>& u) const {
     constexpr size_t kFew = 4;
-    const uint32_t dimension = bundle_->dimension + uint32_t(vertex_) * uint32_t(Number::count) + uint32_t(number);
+    const uint32_t dimension =
+        bundle_->dimension + uint32_t(place_of_numbers()) * uint32_t(Number::count) + uint32_t(number);
     if (lanes.size() > kFew) return get(bundle_->samples, dimension, u.data());
     const PixelSamples& s = bundle_->samples;
     for (const size_t i : lanes) get({s.x, s.y, s.first + i, 1}, dimension, &u[i]);
@@ -410,6 +459,10 @@ class PathTracer final : public Tracer {
   Arena arena_;
   /// Index of the vertex for random numbers; invisible surfaces count too.
   int vertex_ = 0;
+  /// 1 while the second rays of first vertices are followed.
+  int branch_ = 0;
+  LaneSet branched_;                  ///< paths whose first vertex scatters a second ray
+  std::array<Path, kMost> branches_;  ///< the same paths with that ray
   std::array<Path, kMost> paths_;
   std::array<SurfacePoint, kMost> points_;
   std::array<LocalBsdf, kMost> bsdfs_;

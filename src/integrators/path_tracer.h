@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/integrator.h"
 #include "integrators/light_selector.h"
@@ -12,9 +13,14 @@ struct PathSettings {
   int max_depth;
   bool sample_lights;
   int light_samples;  ///< at the first vertex
+  /// Rays that first vertices scatter where surfaces reflect and transmit light; 0: two where materials are bright.
+  int scattered_rays;
   bool cut_off_attenuation;
   float cutoff;
   bool regularizes;
+  /// By SurfacePoint::material_id, for scattered_rays = 0: materials whose first vertices scatter two rays. One that
+  /// lies beyond the end does not.
+  std::vector<bool> bright;
 };
 
 /// Returns a tracer for one thread. The arguments must outlive it.

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/render_text.h"
+
+namespace frond {
+namespace {
+
+using testing::channel_mean;
+using testing::render_text;
+
+/// Two sheets under a lamp and a sky, above a ground: one that reflects and transmits the share `bright`, and one that
+/// reflects and transmits the share `dark`.
+std::string scene(const std::string& integrator, const char* bright, const char* dark, const char* film = "") {
+  return fmt::format(R"(
+LookAt 0 -1 3  0 0 0  0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb" "integer xresolution" 32 "integer yresolution" 32 {}
+PixelFilter "box"
+Integrator "path" "integer maxdepth" 50 "integer lightsamples" 1 {}
+WorldBegin
+LightSource "infinite" "spectrum L" "stdillum-D65" "float scale" 0.1
+AttributeBegin AreaLightSource "diffuse" "spectrum L" "stdillum-D65" "bool twosided" true
+Translate 0 0 4 Shape "disk" "float radius" 0.5 AttributeEnd
+AttributeBegin Material "diffuse" "spectrum reflectance" [360 .5 2500 .5]
+Translate 0 0 -1 Shape "disk" "float radius" 9 AttributeEnd
+AttributeBegin Material "diffusetransmission" "spectrum reflectance" [360 {} 2500 {}] "spectrum transmittance" [360 {} 2500 {}]
+Rotate 40 1 0 0 Translate -1 0 0 Shape "disk" AttributeEnd
+AttributeBegin Material "diffusetransmission" "spectrum reflectance" [360 {} 2500 {}] "spectrum transmittance" [360 {} 2500 {}]
+Rotate -40 1 0 0 Translate 1 0 0 Shape "disk" AttributeEnd
+)",
+                     film, integrator, bright, bright, bright, bright, dark, dark, dark, dark);
+}
+
+const std::string kOne = "\"integer scatteredrays\" 1", kTwo = "\"integer scatteredrays\" 2";
+
+// 5 standard errors: a false alarm in 1.7 million. With attenuation as the end of paths, and with MIS by scattered rays
+// alone, the second ray must not change the mean either.
+TEST(ScatteredRays, TwoHaveLessNoiseAndTheSameMean) {
+  for (const char* manner : {"", R"( "string termination" "attenuation")", R"( "bool sampledirect" false)"}) {
+    const Film one = render_text(scene(kOne + manner, ".45", ".45"), {.samples = 256});
+    const Film two = render_text(scene(kTwo + manner, ".45", ".45"), {.samples = 256});
+    const auto a = channel_mean(one, 1), b = channel_mean(two, 1);
+    EXPECT_NEAR(a.mean, b.mean, 5 * std::hypot(a.error, b.error)) << manner;
+    EXPECT_LT(b.error, 0.95 * a.error) << manner;
+    EXPECT_LT(a.error, 0.01 * a.mean) << "the test has lost its power" << manner;
+  }
+}
+
+// The decision is seen in the bits.
+TEST(ScatteredRays, AreTwoForMaterialsThatReturnMostLight) {
+  const auto image = [](const std::string& integrator, const char* bright, const char* dark) {
+    return render_text(scene(integrator, bright, dark), {.samples = 16});
+  };
+  EXPECT_TRUE(image("", ".45", ".4") == image(kTwo, ".45", ".4"));
+  EXPECT_FALSE(image(kOne, ".45", ".4") == image(kTwo, ".45", ".4"));
+  EXPECT_TRUE(image("", ".3", ".1") == image(kOne, ".3", ".1"));
+  const Film mixed = image("", ".45", ".1");
+  EXPECT_FALSE(mixed == image(kOne, ".45", ".1"));
+  EXPECT_FALSE(mixed == image(kTwo, ".45", ".1"));
+}
+
+// Otherwise the parts of an image would not fit together.
+TEST(ScatteredRays, DoNotDependOnTheCrop) {
+  const Film whole = render_text(scene("", ".45", ".1"));
+  const Film part = render_text(scene("", ".45", ".1", "\"float cropwindow\" [.25 .5 .5 .75]"));
+  for (int y = 16; y < 24; ++y)
+    for (int x = 8; x < 16; ++x) ASSERT_EQ(part.mean(x, y), whole.mean(x, y)) << x << ", " << y;
+}
+
+// A sheet that returns all light in a sphere of light is as bright as the sphere, whatever the random numbers.
+TEST(ScatteredRays, ConserveEnergy) {
+  const std::string text = fmt::format(R"(
+LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective" "float fov" 10
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+PixelFilter "box"
+Integrator "path" "integer maxdepth" 100 {}
+WorldBegin
+LightSource "infinite" "spectrum L" "stdillum-D65"
+Material "diffusetransmission" "spectrum reflectance" [360 .6 2500 .6] "spectrum transmittance" [360 .4 2500 .4]
+Rotate 30 1 0 0 Shape "disk"
+)",
+                                       kTwo);
+  const Film film = render_text(text, {.samples = 16});
+  const auto sum = channel_mean(film, 1);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_NEAR(film.mean(x, y)[1], sum.mean, 1e-5 * sum.mean);
+}
+
+}  // namespace
+}  // namespace frond
