@@ -45,8 +45,12 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
   if (!wavelengths.empty()) set_wavelengths(description, wavelengths);
   if (period) set_param(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
   ParsedPlugin& integrator = description.integrator;
-  if (!keeps_depth && find_param(registry.integrators.get(integrator.name, integrator.where), "maxdepth"))
+  const IntegratorInfo& info = registry.integrators.get(integrator.name, integrator.where);
+  if (!keeps_depth && find_param(info, "maxdepth"))
     set_param(integrator.params, parsed_numbers("integer", "maxdepth", {kDeepest}));
+  // A target varies more from place to place than a pixel does, so a second ray from the same place does not pay.
+  if (find_param(info, "scatteredrays") && !find_param(integrator.params, "scatteredrays"))
+    set_param(integrator.params, parsed_numbers("integer", "scatteredrays", {1}));
 }
 
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,

@@ -12,7 +12,8 @@ namespace frond {
 void keep_energy(SceneDescription& description, const Registry& registry);
 
 /// Prepares an image's scene for radiometry: applies keep_energy, ends paths by Russian roulette only unless
-/// `keeps_depth`, and sets the period and the wavelengths (a PluginText of `bands`). Throws InputError.
+/// `keeps_depth`, scatters one ray at each hit unless the integrator states the number, and sets the period and the
+/// wavelengths (a PluginText of `bands`). Throws InputError.
 void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description);

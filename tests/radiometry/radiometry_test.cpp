@@ -273,6 +273,22 @@ TEST_F(Radiometry, WhatLeavesAbsorbAddsUpToTheWhole) {
   }
 }
 
+// For two rays, an integrator must state them.
+TEST_F(Radiometry, FirstHitsScatterOneRayUnlessTheSceneSaysTwo) {
+  const std::string world = kSun + canopy(1, lambertian(0.5, 0.44));
+  const BrfRequest request{.views = {{30, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=800"};
+  const auto measured = [&](const std::string& rays) {
+    Session session(silent_log(), {1, {}, {}});
+    const BrfMeter meter(session, description(world, "Integrator \"path\" " + rays + "\n"), request);
+    RenderPart part = meter.scene().empty_part();
+    session.render(meter.scene(), {0, 16}, part);
+    return meter.read(part.film).at(0, 0).mean;
+  };
+  const double by_default = measured("");
+  EXPECT_EQ(by_default, measured("\"integer scatteredrays\" 1"));
+  EXPECT_NE(by_default, measured("\"integer scatteredrays\" 2"));
+}
+
 TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
   const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
   const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
