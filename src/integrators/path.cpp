@@ -88,42 +88,43 @@ PathBundle with_other_numbers(PathBundle bundle) {
   return bundle;
 }
 
+/// Estimates the albedo of the material at `point`, where a camera ray of the bundle meets it; empty if it does not
+/// reflect and transmit light.
+std::optional<double> two_sided_albedo(const SurfacePoint& point, const PathBundle& bundle, size_t ray, Arena& arena) {
+  const SampledWavelengths& lambda = bundle.lambda[ray];
+  arena.reset();
+  const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, arena);
+  if (!bsdf || !has_two_sides(*bsdf)) return {};
+  LocalBsdf local;
+  local.set(*bsdf, point.hit, -bundle.rays[ray].d);
+  return double(mean(local.albedo(1, bundle.keys[ray]), lambda));
+}
+
 /// Materials, by id, that reflect and transmit light and return most of it, where camera rays meet them.
 std::vector<bool> bright_materials(const World& world, const PilotRays& rays) {
   constexpr uint64_t kPixels = 256;
   constexpr size_t kStep = 4;  // every fourth camera ray
   constexpr double kMost = 0.75;
-  struct Mean {
-    double sum = 0;
-    uint64_t count = 0;
-  };
-  std::vector<Mean> albedo;  // by material
+  std::vector<double> excess;  // by material: sum of albedos less kMost
+  std::vector<bool> is_met;
   Arena arena;
   SurfacePoint point;
-  const SurfacePoint* at = nullptr;
-  with_surface_of_errors(at, [&] {
-    for (uint64_t pixel = 0; pixel < kPixels; ++pixel) {
-      check_stop();
-      const PathBundle bundle = rays.bundle(pixel, 0);
-      for (size_t i = 0; i < bundle.rays.size(); i += kStep) {
-        at = nullptr;
-        if (!world.intersect(bundle.rays[i], bundle.keys[i], point)) continue;
-        at = &point;
-        arena.reset();
-        const Bsdf* bsdf = point.material->evaluate(point.hit, bundle.lambda[i], arena);
-        if (!bsdf || !has_two_sides(*bsdf)) continue;
-        LocalBsdf local;
-        local.set(*bsdf, point.hit, -bundle.rays[i].d);
-        if (albedo.size() <= point.material_id) albedo.resize(point.material_id + 1);
-        Mean& mean_albedo = albedo[point.material_id];
-        mean_albedo.sum += double(mean(local.albedo(1, bundle.keys[i]), bundle.lambda[i]));
-        ++mean_albedo.count;
-      }
+  const SurfacePoint* const at = &point;
+  for (uint64_t pixel = 0; pixel < kPixels; ++pixel) {
+    check_stop();
+    const PathBundle bundle = rays.bundle(pixel, 0);
+    for (size_t i = 0; i < bundle.rays.size(); i += kStep) {
+      if (!world.intersect(bundle.rays[i], bundle.keys[i], point)) continue;
+      std::optional<double> albedo;
+      with_surface_of_errors(at, [&] { albedo = two_sided_albedo(point, bundle, i, arena); });
+      if (!albedo) continue;
+      if (excess.size() <= point.material_id) excess.resize(point.material_id + 1), is_met.resize(excess.size());
+      excess[point.material_id] += *albedo - kMost;
+      is_met[point.material_id] = true;
     }
-  });
-  std::vector<bool> bright;
-  for (const Mean& m : albedo) bright.push_back(m.count > 0 && m.sum >= kMost * double(m.count));
-  return bright;
+  }
+  for (size_t i = 0; i < excess.size(); ++i) is_met[i] = is_met[i] && excess[i] >= 0;
+  return is_met;
 }
 
 /// Whether two light samples at the first hit have less variance times CPU time than one. What they save is the
