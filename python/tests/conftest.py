@@ -10,7 +10,7 @@ sys.path.insert(0, os.environ.get("FROND_PYTHON_PATH", str(ROOT / "build" / "rel
 SCENE = """
 Camera "orthographic" "float screenwindow" [ -1 1 -1 1 ]
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"
 MakeNamedMaterial "leaf" "string type" "leaf_solved"

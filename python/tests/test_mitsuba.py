@@ -189,7 +189,7 @@ SCENE = """Scale -1 1 1
 LookAt 0 -5 3  0 0 0.5  0 0 1
 Camera "perspective" "float fov" 30
 Film "rgb" "integer xresolution" 48 "integer yresolution" 32
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 Integrator "path" "integer maxdepth" 6
 PixelFilter "box"
 WorldBegin

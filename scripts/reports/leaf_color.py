@@ -16,7 +16,7 @@ SCENE = """
 LookAt 0 0 1  0 0 0  0 1 0
 Camera "orthographic"
 Film "rgb" "integer xresolution" 64 "integer yresolution" 64
-Sampler "paddedsobol" "integer pixelsamples" {samples}
+Sampler "lattice" "integer pixelsamples" {samples}
 Integrator "path" "integer maxdepth" 1
 WorldBegin
 LightSource "distant" "point3 from" [ 0 0 1 ] "point3 to" [ 0 0 0 ] "spectrum L" "stdillum-D65" "float scale" 3.14159265

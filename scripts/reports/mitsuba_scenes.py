@@ -35,7 +35,7 @@ HEAD = """{space}
 LookAt {look}
 Camera {camera}
 Film "rgb" "integer xresolution" {width} "integer yresolution" {height} {film}
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 Integrator "path" "integer maxdepth" 12
 PixelFilter "box"
 WorldBegin

@@ -22,7 +22,7 @@ SCENE = """Option "float period" [{side} {side}]
 Camera "distant" "float zenith" [40] "float azimuth" [30] "float target" [0 {side} 0 {side} {top}]
 Film "rgb" "integer xresolution" 1 "integer yresolution" {pixels}
 PixelFilter "box"
-Sampler "paddedsobol" "integer pixelsamples" {samples}
+Sampler "lattice" "integer pixelsamples" {samples}
 Integrator "path" "integer maxdepth" 64 "integer scatteredrays" 1
 WorldBegin
 LightSource "distant" "point3 from" [-0.5 0 0.8660254] "point3 to" [0 0 0] "spectrum L" "stdillum-E"

@@ -57,10 +57,10 @@ struct PathBundle {
   static_assert(kMost % RayPacket::kWidth == 0);
 
   const Sampler& sampler;
-  uint32_t dimension = 0;  ///< first unused dimension of the sampler
-  PixelSamples samples{};  ///< kMost samples
-  uint32_t lanes = 0;      ///< bit i is set if sample i has a camera ray
-  uint32_t wanted = 0;     ///< bit i is set if the result of sample i is needed; a subset of `lanes`
+  uint32_t dimension = uint32_t(Dimension::light);  ///< first unused dimension of the sampler
+  PixelSamples samples{};                           ///< kMost samples
+  uint32_t lanes = 0;                               ///< bit i is set if sample i has a camera ray
+  uint32_t wanted = 0;  ///< bit i is set if the result of sample i is needed; a subset of `lanes`
   std::array<Ray, kMost> rays{};
   std::array<SampledWavelengths, kMost> lambda{};
   std::array<uint64_t, kMost> keys{};  ///< keys of the paths' random streams (sample_key)

@@ -134,7 +134,7 @@ std::string view(const PlantGeometry& geometry, const ImportOptions& options, co
       "LookAt {:.9g} {:.9g} {:.9g}   {:.9g} {:.9g} {:.9g}   0 0 1\n"
       "Camera \"perspective\" \"float fov\" 30\n"
       "Film \"rgb\" \"integer xresolution\" 800 \"integer yresolution\" 800 \"string filename\" \"{}.png\"\n"
-      "Sampler \"paddedsobol\" \"integer pixelsamples\" 64\n"
+      "Sampler \"lattice\" \"integer pixelsamples\" 64\n"
       "Integrator \"path\" \"integer maxdepth\" 64\n\n"
       "WorldBegin\n\n"
       "# Sun and sky: a horizontal white surface has the value 1. Without \"illuminance\" they are in physical units.\n"

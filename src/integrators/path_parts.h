@@ -61,12 +61,8 @@ void with_surface_of_errors(const SurfacePoint* const& at, const Act& act) {
   }
 }
 
-/// Whether light leaves the surface on both sides, other than in delta lobes alone.
-inline bool has_two_sides(const Bsdf& bsdf) {
-  const Lobes lobes = bsdf.flags();
-  return any(lobes & Lobes::reflection) && any(lobes & Lobes::transmission) &&
-         any(lobes & (Lobes::diffuse | Lobes::glossy));
-}
+/// Whether a surface scatters light other than in delta lobes alone.
+inline bool is_rough(const Bsdf& bsdf) { return any(bsdf.flags() & (Lobes::diffuse | Lobes::glossy)); }
 
 /// Writes the members one by one: a copy of the whole would wait for these writes.
 inline void set_first_hit(const SurfacePoint& point, FirstHit& first) {

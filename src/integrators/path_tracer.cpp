@@ -67,6 +67,7 @@ class PathTracer final : public Tracer {
  private:
   static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
   static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
+  static constexpr size_t kFew = 4;                        ///< for more paths, numbers of all are as fast
 
   /// Traces all paths with the first rays that their first vertices scatter, then with the second ones.
   void trace() {
@@ -186,7 +187,7 @@ class PathTracer final : public Tracer {
 
   /// Whether a first vertex scatters two rays.
   bool scatters_two(const SurfacePoint& point, const Bsdf& bsdf) const {
-    if (settings_.scattered_rays == 2) return has_two_sides(bsdf);
+    if (settings_.scattered_rays == 2) return is_rough(bsdf);
     return point.material_id < settings_.bright.size() && settings_.bright[point.material_id];
   }
 
@@ -237,33 +238,25 @@ class PathTracer final : public Tracer {
 
   /// Adds light samples, at the first vertex of each path as many as the settings say.
   void add_sampled_lights(const LaneSet& lanes) {
-    // Random numbers that no light of the scene uses are not generated.
-    if (selector_.has_choice()) draw(lanes, Number::light, numbers_);
-    if (selector_.has_extent()) draw(lanes, Number::on_light, pairs_);
     const bool twice = vertex_ == 0 && settings_.light_samples == 2 && selector_.has_extent();
     for (const size_t i : lanes) paths_[i].light_samples = twice ? 2 : 1;
-    add_light_samples(lanes, Use::light_bsdf, Use::shadow_ray);
-    if (!twice) return;
-    for (const size_t i : lanes) {
-      if (selector_.has_choice()) numbers_[i] = opposite(numbers_[i]);
-      pairs_[i] = opposite(pairs_[i]);
-    }
-    add_light_samples(lanes, Use::second_light_bsdf, Use::second_shadow_ray);
+    // Random numbers that no light of the scene uses are not generated.
+    const LaneSet twins = twice ? lanes : LaneSet();
+    if (selector_.has_choice()) draw(lanes, twins, Number::light, numbers_);
+    if (selector_.has_extent()) draw(lanes, twins, Number::on_light, pairs_);
+    add_light_samples(lanes, 0, Use::light_bsdf, Use::shadow_ray);
+    if (twice) add_light_samples(lanes, 1, Use::second_light_bsdf, Use::second_shadow_ray);
   }
 
-  /// Numbers of a second sample, as far as possible from the first.
-  static float opposite(float u) { return u < 0.5f ? u + 0.5f : u - 0.5f; }
-  static Vec2 opposite(Vec2 u) { return {opposite(u.x), opposite(u.y)}; }
-
-  void add_light_samples(const LaneSet& lanes, Use bsdf, Use shadow_ray) {
+  void add_light_samples(const LaneSet& lanes, size_t which, Use bsdf, Use shadow_ray) {
     LaneSet lit;
     bool alike = vertex_ == 0;
     for (const size_t i : lanes) {
       const SurfacePoint& point = points_[i];
       at_ = &point;
       const Path& path = paths_[i];
-      const float number = selector_.has_choice() ? numbers_[i] : 0;
-      Vec2 on_light = selector_.has_extent() ? pairs_[i] : Vec2{number, 0};
+      const float number = selector_.has_choice() ? numbers_[which][i] : 0;
+      Vec2 on_light = selector_.has_extent() ? pairs_[which][i] : Vec2{number, 0};
       const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light.x, number);
       if (!chosen) continue;
       const auto [light, probability] = *chosen;
@@ -341,8 +334,11 @@ class PathTracer final : public Tracer {
 
   /// Samples the next directions. Returns the paths that continue, including those in `passed`.
   LaneSet scatter(const LaneSet& lanes, const LaneSet& passed) {
-    draw(lanes, Number::lobe, numbers_);
-    draw(lanes, Number::direction, pairs_);
+    LaneSet twins;
+    for (const size_t i : lanes)
+      if (paths_[i].scattered_rays == 2) twins.add(i);
+    draw(lanes, twins, Number::lobe, numbers_);
+    draw(lanes, twins, Number::direction, pairs_);
     LaneSet alive = passed;
     for (const size_t i : lanes) {
       Path& path = paths_[i];
@@ -352,9 +348,9 @@ class PathTracer final : public Tracer {
                                                         path.key.of(Use::albedo), arena_);
       if (path.scattered_rays == 2) {
         branches_[i] = path;
-        if (scatter(i, opposite(numbers_[i]), opposite(pairs_[i]), Use::second_bsdf, branches_[i])) branched_.add(i);
+        if (scatter(i, numbers_[1][i], pairs_[1][i], Use::second_bsdf, branches_[i])) branched_.add(i);
       }
-      if (scatter(i, numbers_[i], pairs_[i], Use::bsdf, path)) alive.add(i);
+      if (scatter(i, numbers_[0][i], pairs_[0][i], Use::bsdf, path)) alive.add(i);
       if (branch_ == 0) bundle_->results[i].scatterings = path.depth;
     }
     at_ = nullptr;
@@ -413,15 +409,31 @@ class PathTracer final : public Tracer {
     bundle_->sampler.get2d(samples, dimension, u);
   }
 
-  /// Draws the sampler's numbers for these paths; for the whole bundle if that is as fast.
+  /// Numbers by path, of a first sample and of a second one.
   template <class T>
-  void draw(const LaneSet& lanes, Number number, std::array<T, kMost>& u) const {
-    constexpr size_t kFew = 4;
+  using Numbers = std::array<std::array<T, kMost>, 2>;
+
+  /// Draws the sampler's numbers for these paths; for the `twins` among them those of samples 2 i and 2 i + 1, so that
+  /// all first and second ones together are as well distributed as those of twice as many samples.
+  template <class T>
+  void draw(const LaneSet& lanes, const LaneSet& twins, Number number, Numbers<T>& u) const {
     const uint32_t dimension =
         bundle_->dimension + uint32_t(place_of_numbers()) * uint32_t(Number::count) + uint32_t(number);
-    if (lanes.size() > kFew) return get(bundle_->samples, dimension, u.data());
     const PixelSamples& s = bundle_->samples;
-    for (const size_t i : lanes) get({s.x, s.y, s.first + i, 1}, dimension, &u[i]);
+    const LaneSet others(lanes.bits() & ~twins.bits());
+    if (others.size() > kFew) {
+      get(s, dimension, u[0].data());
+    } else {
+      for (const size_t i : others) get({s.x, s.y, s.first + i, 1}, dimension, &u[0][i]);
+    }
+    if (twins.empty()) return;
+    std::array<T, 2 * kMost> both;
+    if (twins.size() > kFew) {
+      get({s.x, s.y, 2 * s.first, 2 * s.count}, dimension, both.data());
+    } else {
+      for (const size_t i : twins) get({s.x, s.y, 2 * (s.first + i), 2}, dimension, &both[2 * i]);
+    }
+    for (const size_t i : twins) u[0][i] = both[2 * i], u[1][i] = both[2 * i + 1];
   }
 
   const World& world_;
@@ -442,8 +454,8 @@ class PathTracer final : public Tracer {
   std::array<Lit, kMost> lit_;
   std::array<Ray, kMost> shadow_rays_;
   std::array<uint64_t, kMost> shadow_keys_;
-  std::array<float, kMost> numbers_;
-  std::array<Vec2, kMost> pairs_;
+  Numbers<float> numbers_;
+  Numbers<Vec2> pairs_;
 };
 
 }  // namespace

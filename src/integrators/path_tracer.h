@@ -13,13 +13,13 @@ struct PathSettings {
   int max_depth;
   bool sample_lights;
   int light_samples;  ///< at the first vertex
-  /// Rays that first vertices scatter where surfaces reflect and transmit light; 0: two where materials are bright.
+  /// Rays that first vertices scatter where surfaces are not mirrors; 0: two where materials are `bright`, else one.
   int scattered_rays;
   bool cut_off_attenuation;
   float cutoff;
   bool regularizes;
-  /// By SurfacePoint::material_id, for scattered_rays = 0: materials whose first vertices scatter two rays. One that
-  /// lies beyond the end does not.
+  /// By SurfacePoint::material_id: materials whose first vertices scatter two rays. One that lies beyond the end does
+  /// not.
   std::vector<bool> bright;
 };
 

@@ -16,7 +16,7 @@ namespace {
 enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo, medium };
 
 /// Sampler dimensions of one vertex.
-enum class Number : uint32_t { distance, light, on_light, lobe, direction, count };
+enum class Number : uint32_t { light, on_light, lobe, direction, distance, count };
 
 constexpr Param kVolPath[] = {
     {.name = "maxdepth",

@@ -147,18 +147,15 @@ class Worker {
     b.samples = {at.x, at.y, first, kBundle};
     b.wanted = wanted;
     b.lanes = whole_packets(wanted);
-    uint32_t dimension = 0;
     std::array<float, kBundle> u;
     std::array<Vec2, kBundle> on_filter, on_lens{};
-    if (!has_fixed_wavelengths_) sampler.get1d(b.samples, dimension, u.data());
+    if (!has_fixed_wavelengths_) sampler.get1d(b.samples, uint32_t(Dimension::wavelengths), u.data());
     if (!job_.wavelength_jitter) u.fill(0.5f);
-    ++dimension;
-    sampler.get2d(b.samples, dimension++, on_filter.data());
-    if (job_.camera.uses_lens()) sampler.get2d(b.samples, dimension++, on_lens.data());
+    sampler.get2d(b.samples, uint32_t(Dimension::film), on_filter.data());
+    if (job_.camera.uses_lens()) sampler.get2d(b.samples, uint32_t(Dimension::lens), on_lens.data());
     if (!job_.pixel_jitter) on_lens.fill({0.5f, 0.5f});
     std::array<float, kBundle> time{};
-    if (job_.has_motion) sampler.get1d(b.samples, dimension++, time.data());
-    b.dimension = dimension;
+    if (job_.has_motion) sampler.get1d(b.samples, uint32_t(Dimension::time), time.data());
     std::array<Vec2, kBundle> on_film;
     for (size_t i = 0; i < kBundle; ++i) {
       if (!(b.lanes >> i & 1)) continue;
@@ -294,10 +291,9 @@ int film_exponent(const RenderJob& job, const FilmSettings& settings) {
     check_stop();
     RandomStream place(hash_key(job.seed, i));
     const int x = int(place.uniform() * float(settings.width)), y = int(place.uniform() * float(settings.height));
-    PathBundle bundle{
-        .sampler = job.sampler, .dimension = 1, .samples = {x, y, i, PathBundle::kMost}, .lanes = 1, .wanted = 1};
+    PathBundle bundle{.sampler = job.sampler, .samples = {x, y, i, PathBundle::kMost}, .lanes = 1, .wanted = 1};
     float u;
-    job.sampler.get1d({x, y, i}, 0, &u);
+    job.sampler.get1d({x, y, i}, uint32_t(Dimension::wavelengths), &u);
     bundle.lambda[0] = job.wavelengths.sample_in_turn(i, u);
     bundle.rays[0] = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
     bundle.keys[0] = sample_key(job.seed, x, y, i);

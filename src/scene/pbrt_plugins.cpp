@@ -26,10 +26,9 @@ struct StandIn {
 constexpr std::string_view kRandomized[] = {"pixelsamples", "seed", "randomization"};
 constexpr std::string_view kPlain[] = {"pixelsamples", "seed"};
 constexpr std::string_view kStratified[] = {"xsamples", "ysamples", "jitter", "seed"};
-constexpr StandIn kSamplers[] = {
-    {"zsobol", "paddedsobol", "", kRandomized}, {"paddedsobol", "paddedsobol", "", kRandomized},
-    {"halton", "paddedsobol", "", kRandomized}, {"sobol", "paddedsobol", "", kRandomized},
-    {"pmj02bn", "paddedsobol", "", kPlain},     {"stratified", "paddedsobol", "", kStratified}};
+constexpr StandIn kSamplers[] = {{"zsobol", "lattice", "", kRandomized}, {"paddedsobol", "lattice", "", kRandomized},
+                                 {"halton", "lattice", "", kRandomized}, {"sobol", "lattice", "", kRandomized},
+                                 {"pmj02bn", "lattice", "", kPlain},     {"stratified", "lattice", "", kStratified}};
 
 constexpr std::string_view kPath[] = {"maxdepth", "lightsampler", "regularize"};
 constexpr std::string_view kSimplePath[] = {"maxdepth", "samplelights", "samplebsdf"};

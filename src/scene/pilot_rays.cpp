@@ -21,11 +21,9 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   PathBundle bundle{.sampler = sampler, .samples = {x, y, number * kSamples, kSamples}, .lanes = kAll, .wanted = kAll};
   std::array<Vec2, kSamples> on_film, on_lens{};
   std::array<float, kSamples> time{};
-  uint32_t dimension = 1;  // the first is that of the wavelengths
-  sampler.get2d(bundle.samples, dimension++, on_film.data());
-  if (scene_.camera().uses_lens()) sampler.get2d(bundle.samples, dimension++, on_lens.data());
-  if (scene_.has_motion()) sampler.get1d(bundle.samples, dimension++, time.data());
-  bundle.dimension = dimension;
+  sampler.get2d(bundle.samples, uint32_t(Dimension::film), on_film.data());
+  if (scene_.camera().uses_lens()) sampler.get2d(bundle.samples, uint32_t(Dimension::lens), on_lens.data());
+  if (scene_.has_motion()) sampler.get1d(bundle.samples, uint32_t(Dimension::time), time.data());
   bundle.lambda.fill(scene_.wavelengths().sample_in_turn(pixel, place.uniform()));
   for (uint32_t k = 0; k < kSamples; ++k) {
     on_film[k] = {float(x) + on_film[k].x, float(y) + on_film[k].y};

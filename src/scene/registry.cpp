@@ -8,7 +8,7 @@ namespace frond {
 
 extern const CameraInfo perspective_camera, orthographic_camera, spherical_camera, distant_camera;
 extern const FilmInfo rgb_film, gbuffer_film;
-extern const SamplerInfo independent_sampler, padded_sobol_sampler;
+extern const SamplerInfo independent_sampler, lattice_sampler;
 extern const FilterInfo box_filter, triangle_filter, gaussian_filter, mitchell_filter, sinc_filter;
 extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_shape, cylinder_shape,
     bilinear_mesh_shape, curve_shape, loop_subdivision_shape, instances_shape;
@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::array kCameras{&perspective_camera, &orthographic_camera, &spherical_camera, &distant_camera};
 constexpr std::array kFilms{&rgb_film, &gbuffer_film};
-constexpr std::array kSamplers{&padded_sobol_sampler, &independent_sampler};
+constexpr std::array kSamplers{&lattice_sampler, &independent_sampler};
 constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &mitchell_filter, &sinc_filter};
 constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape,         &sphere_shape,
                              &disk_shape,          &cylinder_shape,         &bilinear_mesh_shape,

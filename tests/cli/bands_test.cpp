@@ -34,7 +34,7 @@ class BandCommands : public ::testing::Test {
 LookAt 0 0 1  0 0 0  0 1 0
 Camera "orthographic"
 Film "rgb" "integer xresolution" 6 "integer yresolution" 4
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 Integrator "path" "integer maxdepth" 2 "bool sampledirect" false
 WorldBegin
 LightSource "infinite" "spectrum L" [300 1 2500 1]

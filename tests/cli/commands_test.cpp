@@ -33,7 +33,7 @@ class Commands : public ::testing::Test {
 LookAt 0 0 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 24 "integer yresolution" 16
-Sampler "paddedsobol" "integer pixelsamples" 4
+Sampler "lattice" "integer pixelsamples" 4
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"
 MakeNamedMaterial "thing" "string type" "diffuse" "rgb reflectance" [.2 .5 .1]

@@ -22,7 +22,7 @@ class ForDenoiser : public ::testing::Test {
 LookAt 0 0 1  0 0 0  0 1 0
 Camera "orthographic"
 Film "rgb" "integer xresolution" 24 "integer yresolution" 24
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 Integrator "path" "integer maxdepth" 2
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"

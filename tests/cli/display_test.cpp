@@ -28,7 +28,7 @@ class LiveDisplay : public ::testing::Test {
 LookAt 0 0 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" {} "integer yresolution" {} "integer pixelbounds" [ 2 {} 1 {} ]
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 Integrator "path" "integer maxdepth" 2
 WorldBegin
 LightSource "infinite" "rgb L" [.3 .4 .5]

@@ -29,7 +29,7 @@ class Merge : public ::testing::Test {
 LookAt 0 0 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 24 "integer yresolution" 20
-Sampler "paddedsobol" "integer pixelsamples" 37
+Sampler "lattice" "integer pixelsamples" 37
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"
 MakeNamedMaterial "thing" "string type" "diffuse" "rgb reflectance" [.2 .5 .1]

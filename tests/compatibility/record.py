@@ -23,7 +23,7 @@ LookAt 0 -3 1   0 0 0   0 0 1
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32
 PixelFilter "box"
-Sampler "paddedsobol" "integer pixelsamples" 64
+Sampler "lattice" "integer pixelsamples" 64
 Integrator "path" "integer maxdepth" 8
 Option "string wavelengths" "smpte"
 WorldBegin

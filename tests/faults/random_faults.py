@@ -40,7 +40,7 @@ SCENE = """
 LookAt 0 -2.5 1.5  0 0 0  0 0 1
 Camera "perspective" "float fov" 45
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32
-Sampler "paddedsobol" "integer pixelsamples" 64
+Sampler "lattice" "integer pixelsamples" 64
 WorldBegin
 LightSource "infinite" "spectrum L" "light.spd"
 Texture "image" "spectrum" "imagemap" "string filename" "texture.exr"

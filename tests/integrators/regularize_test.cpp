@@ -19,7 +19,7 @@ std::string ball(const std::string& integrator, const std::string& more, const s
 LookAt 0 -6 4  0 0 0  0 0 1
 Camera "perspective" "float fov" 30
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
-Sampler "paddedsobol"
+Sampler "lattice"
 PixelFilter "box"
 Integrator "{}" "integer maxdepth" 6 {}
 WorldBegin
@@ -104,7 +104,7 @@ TEST(Dispersion, WavelengthsAreStratified) {
   const std::string sky = "LightSource \"infinite\"\nMaterial ";
   const auto error = [&](const char* sampler) {
     std::string text = ball("path", "", "\"dielectric\" \"spectrum eta\" \"glass-F11\"");
-    text.replace(text.find("paddedsobol"), 11, sampler).replace(text.find("Material \"diffuse\""), 9, sky);
+    text.replace(text.find("lattice"), 7, sampler).replace(text.find("Material \"diffuse\""), 9, sky);
     text.replace(text.find("scale\" 50"), 9, "scale\" 1e-6");
     constexpr uint64_t kSeeds = 8;
     double square = 0;
@@ -119,7 +119,7 @@ TEST(Dispersion, WavelengthsAreStratified) {
       }
     return std::sqrt(square);
   };
-  EXPECT_LT(error("paddedsobol"), 0.7 * error("independent"));
+  EXPECT_LT(error("lattice"), 0.7 * error("independent"));
 }
 
 }  // namespace

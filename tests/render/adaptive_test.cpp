@@ -121,7 +121,7 @@ TEST_F(Adaptive, RelativeNoiseIsThatOfTheMeans) {
       for (size_t i = 0; i < 3; ++i)
         square += std::pow((part.film.mean(x, y)[i] - reference.film.mean(x, y)[i]) / unit[i], 2);
   EXPECT_LE(std::sqrt(square / (3 * c.width() * c.height())), kRelative);
-  EXPECT_LT(part.header.statistics.paths, to_noise(scene, kRelative * mean / 2).header.statistics.paths);
+  EXPECT_LT(part.header.statistics.paths, to_noise(scene, kRelative * mean / 4).header.statistics.paths);
   const Film black(part.film.format());
   EXPECT_THAT(error_of([&] { noise_unit(black, true); }),
               ::testing::HasSubstr("relative noise needs light of every colour"));

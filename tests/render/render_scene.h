@@ -16,7 +16,7 @@ inline std::string a_scene(const std::string& more = "", int width = 40, int hei
 LookAt 0 .5 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" {} "integer yresolution" {}
-Sampler "paddedsobol" "integer pixelsamples" 4
+Sampler "lattice" "integer pixelsamples" 4
 PixelFilter "gaussian"
 Integrator "path" "integer maxdepth" 3
 WorldBegin

@@ -33,7 +33,7 @@ TEST(Parser, HasDefaultsForWhatTheSceneLeavesOut) {
   const SceneDescription s = parse("WorldBegin");
   EXPECT_EQ(s.camera.name, "perspective");
   EXPECT_EQ(s.film.name, "rgb");
-  EXPECT_EQ(s.sampler.name, "paddedsobol");
+  EXPECT_EQ(s.sampler.name, "lattice");
   EXPECT_EQ(s.integrator.name, "path");
   EXPECT_EQ(s.filter.name, "gaussian");
   EXPECT_EQ(s.color_space, "srgb");

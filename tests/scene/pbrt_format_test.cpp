@@ -288,7 +288,7 @@ Answer answer(const std::string& text, const std::string& ignored = "") {
 TEST(PbrtFormat, SamplersAreAnsweredByOurs) {
   for (const char* name : {"halton", "sobol", "zsobol", "pmj02bn", "paddedsobol"}) {
     const Answer a = answer(fmt::format("Sampler \"{}\" \"integer pixelsamples\" 9 WorldBegin", name));
-    EXPECT_EQ(a.scene.sampler.name, "paddedsobol");
+    EXPECT_EQ(a.scene.sampler.name, "lattice");
     EXPECT_EQ(a.scene.sampler.params.size(), 1u);
     EXPECT_TRUE(a.problems.empty() && a.log.warnings.empty());
   }

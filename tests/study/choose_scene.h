@@ -11,7 +11,7 @@ LookAt 0 -1 0.6  0 0 0  0 0 1
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" )" +
          std::to_string(size) + R"( "integer yresolution" )" + std::to_string(size) + R"(
-Sampler "paddedsobol" "integer pixelsamples" 64
+Sampler "lattice" "integer pixelsamples" 64
 Integrator "path" "integer maxdepth" 6
 WorldBegin
 LightSource "distant" "point3 from" [0 -3 4] "point3 to" [0 0 0] "spectrum L" "stdillum-D65"

@@ -16,7 +16,7 @@ SCENE = """
 LookAt 0 .5 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 48 "integer yresolution" 32
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 Integrator "path" "integer maxdepth" 6
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"

@@ -29,7 +29,7 @@ DEGENERATE = """
 LookAt 0 0 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32
-Sampler "paddedsobol" "integer pixelsamples" 16
+Sampler "lattice" "integer pixelsamples" 16
 WorldBegin
 LightSource "point" "point3 from" [0 0 0] "spectrum I" "stdillum-D65"
 LightSource "infinite" "rgb L" [1e-38 1e-38 1e-38]

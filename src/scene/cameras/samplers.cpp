@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 
 #include "core/sampler.h"
 
@@ -74,78 +73,31 @@ constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
   return v ^ v * 0x53a22864u;
 }
 
-/// Second dimension of Sobol's sequence before the bit reversal: Pascal's triangle modulo 2 times the index. The matrix
-/// has the block form [[P, P], [0, P]] recursively, hence five steps.
-constexpr uint32_t sobol_second(uint32_t v) {
-  v ^= v >> 16;
-  v ^= (v & 0xff00ff00u) >> 8;
-  v ^= (v & 0xf0f0f0f0u) >> 4;
-  v ^= (v & 0xccccccccu) >> 2;
-  return v ^ (v & 0xaaaaaaaau) >> 1;
-}
-
 constexpr float to_unit(uint32_t v) { return static_cast<float>(v >> 8) * 0x1p-24f; }
 
-/// Scrambling of one dimension of one pixel.
-struct Scramble {
-  uint32_t order, seed_first, seed_second;
+/// Numbers of one dimension, or a pair of dimensions, of a pixel's samples: sample i is the point
+/// place(i) (factor_x, factor_y) + shift, modulo 1 in units of 2^-32.
+struct Lattice {
+  uint32_t order;  ///< seed of the shuffle; 0: none
+  uint32_t factor_x, factor_y, shift_x, shift_y;
 
-  /// Returns the position of a sample in the sequence, with reversed bits.
-  uint32_t place(uint32_t index) const { return reverse_bits(owen_hash(reverse_bits(index), order)); }
-  float first(uint32_t place) const { return to_unit(reverse_bits(owen_hash(place, seed_first))); }
-  float second(uint32_t place) const { return to_unit(reverse_bits(owen_hash(sobol_second(place), seed_second))); }
+  /// Radical inverse of the sample's place in the sequence.
+  uint32_t place(uint32_t index) const {
+    const uint32_t inverse = reverse_bits(index);
+    return order == 0 ? inverse : owen_hash(inverse, order);
+  }
+  void put(uint32_t index, float& u) const { u = to_unit(place(index) * factor_x + shift_x); }
+  void put(uint32_t index, Vec2& u) const {
+    const uint32_t at = place(index);
+    u = {to_unit(at * factor_x + shift_x), to_unit(at * factor_y + shift_y)};
+  }
 };
 
-/// Number of samples generated at once: the compiler vectorizes loops of this length.
-constexpr uint32_t kBlock = 16;
-
-/// Generates kBlock samples of one dimension.
-[[gnu::always_inline]] inline void make_block(const Scramble& s, uint32_t index, float* u) {
-  for (uint32_t i = 0; i < kBlock; ++i) u[i] = s.first(s.place(index + i));
-}
-/// Generates kBlock samples of a pair of dimensions. x and y are separate arrays for vectorization.
-[[gnu::always_inline]] inline void make_block(const Scramble& s, uint32_t index, Vec2* u) {
-  std::array<float, kBlock> x, y;
-  for (uint32_t i = 0; i < kBlock; ++i) {
-    const uint32_t place = s.place(index + i);
-    x[i] = s.first(place);
-    y[i] = s.second(place);
-  }
-  for (uint32_t i = 0; i < kBlock; ++i) u[i] = {x[i], y[i]};
-}
-
-/// Same code for wider instructions, selected at run time. Integer operations give identical bits.
-template <class T>
-void block_any(const Scramble& s, uint32_t index, T* u) {
-  make_block(s, index, u);
-}
-#if defined(__x86_64__)
-template <class T>
-[[gnu::target("avx2")]] void block_avx2(const Scramble& s, uint32_t index, T* u) {
-  make_block(s, index, u);
-}
-template <class T>
-void block(const Scramble& s, uint32_t index, T* u) {
-  static const auto make = __builtin_cpu_supports("avx2") ? block_avx2<T> : block_any<T>;
-  make(s, index, u);
-}
-#else
-template <class T>
-void block(const Scramble& s, uint32_t index, T* u) {
-  block_any(s, index, u);
-}
-#endif
-
-void one(const Scramble& s, uint32_t index, float& u) { u = s.first(s.place(index)); }
-/// Generates a single sample; used for the remainder of a block.
-void one(const Scramble& s, uint32_t index, Vec2& u) {
-  const uint32_t place = s.place(index);
-  u = {s.first(place), s.second(place)};
-}
-
-/// The first two dimensions of Sobol's sequence, Owen-scrambled and padded: every dimension or pair shuffles the sample
-/// order (Burley 2020, "Practical Hash-based Owen Scrambling").
-class PaddedSobolSampler final : public SamplerBase {
+/// An extensible rank-1 lattice: its first 2^n points are a lattice for each n. Most noise of an image comes from edges
+/// in the pixel, in the light's shadow and between scattered directions; a lattice whose points are far apart estimates
+/// their share with less variance than other points. Its noise would depend on an edge's orientation: it is therefore
+/// reflected at random, beside the random shift that makes the estimate unbiased.
+class LatticeSampler final : public SamplerBase {
  public:
   using SamplerBase::SamplerBase;
   void get1d(const PixelSamples& samples, uint32_t dimension, float* u) const override { get(samples, dimension, u); }
@@ -158,18 +110,40 @@ class PaddedSobolSampler final : public SamplerBase {
       const uint64_t index = samples.first + at;
       const auto first = uint32_t(index);  // sequences of 2^32 samples are concatenated
       const auto end = uint32_t(std::min<uint64_t>(samples.count, at + ((uint64_t{1} << 32) - first)));
-      const Scramble s = scramble(samples, index >> 32, dimension);
-      uint32_t i = at;
-      for (; i + kBlock <= end; i += kBlock) block(s, first + (i - at), u + i);
-      for (; i < end; ++i) one(s, first + (i - at), u[i]);
+      const Lattice numbers = lattice(samples, index >> 32, dimension);
+      for (uint32_t i = at; i < end; ++i) numbers.put(first + (i - at), u[i]);
       at = end;
     }
   }
-  /// Returns independent seeds for the order and for both dimensions, from the pixel and the dimension.
-  Scramble scramble(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
+
+  Lattice lattice(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
+    // The pair (1, kSecond) has the least variance for random edges in a pixel, over all 2^n points.
+    constexpr uint32_t kSecond = 0x4da614d3;
     const uint64_t pixel = sample_key(seed(), samples.x, samples.y, sequence);
-    const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), seeds = mix64(key);
-    return {uint32_t(key >> 32), uint32_t(seeds), uint32_t(seeds >> 32)};
+    const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), shifts = mix64(key);
+    const uint32_t joint = factor(dimension);
+    Lattice numbers{joint != 0 ? 0 : uint32_t(key >> 32) | 1u, joint != 0 ? joint : 1, 0, uint32_t(shifts),
+                    uint32_t(shifts >> 32)};
+    numbers.factor_y = numbers.factor_x * kSecond;
+    if (key & 1) std::swap(numbers.factor_x, numbers.factor_y);
+    if (key & 2) numbers.factor_y = -numbers.factor_y;
+    return numbers;
+  }
+
+  /// Factor of the pairs that form one lattice of six dimensions together; 0 for all others, which shuffle the samples.
+  /// The factors have the least variance for random half-spaces of two or all three pairs, and where the pair of the
+  /// light or of the direction is drawn twice for each sample.
+  static constexpr uint32_t factor(uint32_t dimension) {
+    switch (Dimension(dimension)) {
+      case Dimension::film:
+        return 1;
+      case Dimension::on_light:
+        return 2499;
+      case Dimension::direction:
+        return 2935;
+      default:
+        return 0;
+    }
   }
 };
 
@@ -183,9 +157,12 @@ std::unique_ptr<Sampler> make_sampler(const Params& p, std::optional<uint64_t> s
 extern const SamplerInfo independent_sampler{
     {"sampler", "independent", "Independent uniform random numbers.", "", kSamplerParams},
     make_sampler<IndependentSampler>};
-extern const SamplerInfo padded_sobol_sampler{
-    {"sampler", "paddedsobol", "Owen-scrambled Sobol' points, shuffled anew for each pair of dimensions.",
-     "Burley 2020, Practical Hash-based Owen Scrambling", kSamplerParams},
-    make_sampler<PaddedSobolSampler>};
+extern const SamplerInfo lattice_sampler{
+    {"sampler", "lattice",
+     "A lattice with a random shift in each pixel, for the place in the pixel, the light sample and the first "
+     "scattered "
+     "direction together; shuffled anew for all other numbers.",
+     "Cranley and Patterson 1976; Dammertz and Keller 2008, Image Synthesis by Rank-1 Lattices", kSamplerParams},
+    make_sampler<LatticeSampler>};
 
 }  // namespace frond

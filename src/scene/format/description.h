@@ -92,7 +92,7 @@ struct SceneSettings {
   // Options, initialized with their defaults.
   ParsedPlugin camera{"perspective", {}, {}};
   ParsedPlugin film{"rgb", {}, {}};
-  ParsedPlugin sampler{"paddedsobol", {}, {}};
+  ParsedPlugin sampler{"lattice", {}, {}};
   ParsedPlugin integrator{"path", {}, {}};
   ParsedPlugin filter{"gaussian", {}, {}};
   std::string color_space = "srgb";  ///< of the film; parameters of type rgb store their own
