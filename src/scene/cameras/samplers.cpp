@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 
 #include "core/sampler.h"
 
@@ -130,20 +131,14 @@ class LatticeSampler final : public SamplerBase {
     return numbers;
   }
 
-  /// Factor of the pairs that form one lattice of six dimensions together; 0 for all others, which shuffle the samples.
-  /// The factors have the least variance for random half-spaces of two or all three pairs, and where the pair of the
-  /// light or of the direction is drawn twice for each sample.
+  /// Factors of the dimensions, by Dimension, that form one lattice together; 0 for all others, which shuffle the
+  /// samples. They have the least variance for random half-spaces of two or three pairs, and where the pair of the
+  /// light or of the direction is drawn twice for each sample (scripts/lattice --search).
   static constexpr uint32_t factor(uint32_t dimension) {
-    switch (Dimension(dimension)) {
-      case Dimension::film:
-        return 1;
-      case Dimension::on_light:
-        return 2499;
-      case Dimension::direction:
-        return 2935;
-      default:
-        return 0;
-    }
+    constexpr uint32_t kFilm = 1, kLens = 409, kTime = 2491, kOnLight = 887, kDirection = 6595;
+    constexpr uint32_t kFactors[] = {0, kFilm, kLens, kTime, 0, kOnLight, 0, kDirection};
+    static_assert(std::size(kFactors) == size_t(Dimension::count));
+    return dimension < std::size(kFactors) ? kFactors[dimension] : 0;
   }
 };
 

@@ -1,0 +1,110 @@
+"""The sampler `lattice` in docs/internals.md: variance for random half-spaces, and the search for its factors."""
+
+import re
+
+import numpy
+from scipy.stats import qmc
+
+from tools import ROOT, arguments, table, write_section
+
+SOURCE = (ROOT / "src/scene/cameras/samplers.cpp").read_text(encoding="utf-8")
+SECOND = int(re.search(r"kSecond = (0x[0-9a-f]+)", SOURCE)[1], 16)
+FACTORS = {name: int(re.search(rf"{constant} = (\d+)", SOURCE)[1]) for name, constant in
+           [("film", "kFilm"), ("lens", "kLens"), ("on_light", "kOnLight"), ("direction", "kDirection")]}
+COUNTS = [16, 64, 256, 1024]
+# Pairs of dimensions; "twice" has two points of its second pair for each one of the first.
+CASES = {"film": ["film"], "film, light": ["film", "on_light"], "film, direction": ["film", "direction"],
+         "film, lens": ["film", "lens"], "film, light, direction": ["film", "on_light", "direction"],
+         "film, light twice": ["film", "on_light", "twice"], "film, direction twice": ["film", "direction", "twice"]}
+WEIGHTS = {16: 1, 64: 2, 256: 2, 1024: 1}  # of numbers of points in the search
+random = numpy.random.default_rng(1)
+
+
+class HalfSpaces:
+    """Random half-spaces through the unit cube. Pairs of dimensions contribute to a normal by different shares, since most
+    edges depend on some of the pairs alone."""
+
+    def __init__(self, dimensions, count):
+        normal = random.normal(size=(count, dimensions))
+        shares = numpy.exp(1.3 * random.normal(size=(count, dimensions // 2)))
+        self.normal = (normal * numpy.repeat(shares, 2, axis=1)).astype("float32").T
+        self.threshold = (self.normal * random.random((dimensions, count), dtype="float32")).sum(axis=0)
+        self.volume = self.inside(qmc.Sobol(dimensions, seed=1).random(1 << 15))
+
+    def inside(self, points):
+        return (points.astype("float32") @ self.normal < self.threshold).mean(axis=0)
+
+    def variance(self, make, rounds):
+        """Mean squared error of the volumes by point sets that `make` returns."""
+        return numpy.mean([(self.inside(make()) - self.volume) ** 2 for _ in range(rounds)])
+
+
+def lattice(count, factors, twice=False):
+    """Point sets of one pixel each. The radical inverses of 2^n samples are all multiples of 2^-n."""
+    total = 2 * count if twice else count
+    by = numpy.array([[k, k * SECOND] for k in factors]) * ([[2], [1]] if twice else 1)
+    points = numpy.outer(numpy.arange(total), by.ravel() % total) % total / total
+    return lambda: (points + random.random(points.shape[1])) % 1
+
+
+def sobol(count, pairs, twice=False):
+    """The same by Sobol's sequence, shuffled for each pair."""
+    def make():
+        sets = [random.permutation(qmc.Sobol(2, seed=random).random(count)) for _ in range(pairs)]
+        if twice:
+            sets = [numpy.repeat(sets[0], 2, axis=0), qmc.Sobol(2, seed=random).random(2 * count)]
+            sets[1] = random.permutation(sets[1].reshape(count, 2, 2)).reshape(-1, 2)
+        return numpy.concatenate(sets, axis=1)
+    return make
+
+
+class Measure:
+    """Variance of lattices relative to Sobol's sequence."""
+
+    def __init__(self, half_spaces, rounds):
+        self.spaces = {pairs: HalfSpaces(2 * pairs, half_spaces) for pairs in (1, 2, 3)}
+        self.rounds, self.known = rounds, {}
+
+    def ratio(self, count, factors, twice=False):
+        pairs = len(factors)
+        rounds = max(3, self.rounds * 64 // (64 + count))
+        if (count, pairs, twice) not in self.known:
+            self.known[count, pairs, twice] = self.spaces[pairs].variance(sobol(count, pairs, twice), 2 * rounds)
+        return self.spaces[pairs].variance(lattice(count, factors, twice), rounds) / self.known[count, pairs, twice]
+
+
+def search(measure):
+    """Factors of the light and the direction, four more bits in each step: those of 16 points, then of 64 and so on."""
+    found = [(0, 0, 0)]
+    for step, count in enumerate(COUNTS):
+        old = COUNTS[step - 1] if step else 1
+        odd = range(1, 2 * count, 2) if step == 0 else range(0, 2 * count, 2 * old)
+        scores = []
+        for score, light, direction in found:
+            for b in odd:
+                twice = measure.ratio(count, [1, light + b], True)
+                for c in odd:
+                    k, m = light + b, direction + c
+                    joint = measure.ratio(count, [1, k]) + 0.6 * measure.ratio(count, [1, m]) + measure.ratio(count, [1, k, m])
+                    both = twice + measure.ratio(count, [1, m], True)
+                    scores.append((score + WEIGHTS[count] * (joint + 0.4 * both), k, m))
+        found = sorted(scores)[:40]
+        print(count, "points: light", found[0][1], "direction", found[0][2], flush=True)
+
+
+def main():
+    options = arguments("lattice", ("--search", dict(action="store_true", help="search factors")))
+    measure = Measure(300 if options.quick else 2000, 4 if options.quick else 60)
+    if options.search:
+        return search(Measure(500, 6))
+    rows = []
+    for name, dimensions in CASES.items():
+        factors = [FACTORS[d] for d in dimensions if d != "twice"]
+        rows.append([name] + [f"{measure.ratio(count, factors, 'twice' in dimensions):.2f}" for count in COUNTS])
+    text = table(["pairs of dimensions"] + [f"{count} samples" for count in COUNTS], rows)
+    write_section(options.docs / "internals.md", "lattice", text)
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
