@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "core/sampler.h"
@@ -83,16 +84,63 @@ struct Lattice {
   uint32_t factor_x, factor_y, shift_x, shift_y;
 
   /// Radical inverse of the sample's place in the sequence.
+  template <bool kShuffles>
   uint32_t place(uint32_t index) const {
     const uint32_t inverse = reverse_bits(index);
-    return order == 0 ? inverse : owen_hash(inverse, order);
+    return kShuffles ? owen_hash(inverse, order) : inverse;
   }
-  void put(uint32_t index, float& u) const { u = to_unit(place(index) * factor_x + shift_x); }
-  void put(uint32_t index, Vec2& u) const {
-    const uint32_t at = place(index);
-    u = {to_unit(at * factor_x + shift_x), to_unit(at * factor_y + shift_y)};
-  }
+  float x(uint32_t place) const { return to_unit(place * factor_x + shift_x); }
+  float y(uint32_t place) const { return to_unit(place * factor_y + shift_y); }
 };
+
+/// Number of samples generated at once: the compiler vectorizes loops of this length.
+constexpr uint32_t kBlock = 16;
+
+/// Generates kCount samples of one dimension.
+template <uint32_t kCount, bool kShuffles>
+[[gnu::always_inline]] inline void make(const Lattice& lattice, uint32_t index, float* u) {
+  for (uint32_t i = 0; i < kCount; ++i) u[i] = lattice.x(lattice.place<kShuffles>(index + i));
+}
+/// Generates kCount samples of a pair of dimensions. x and y are separate arrays for vectorization.
+template <uint32_t kCount, bool kShuffles>
+[[gnu::always_inline]] inline void make(const Lattice& lattice, uint32_t index, Vec2* u) {
+  std::array<float, kCount> x, y;
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const uint32_t place = lattice.place<kShuffles>(index + i);
+    x[i] = lattice.x(place);
+    y[i] = lattice.y(place);
+  }
+  for (uint32_t i = 0; i < kCount; ++i) u[i] = {x[i], y[i]};
+}
+template <uint32_t kCount, class T>
+[[gnu::always_inline]] inline void make(const Lattice& lattice, uint32_t index, T* u) {
+  if (lattice.order == 0)
+    make<kCount, false>(lattice, index, u);
+  else
+    make<kCount, true>(lattice, index, u);
+}
+
+/// Same code for wider instructions, selected at run time. Integer operations give identical bits.
+template <class T>
+void block_any(const Lattice& lattice, uint32_t index, T* u) {
+  make<kBlock>(lattice, index, u);
+}
+#if defined(__x86_64__)
+template <class T>
+[[gnu::target("avx2")]] void block_avx2(const Lattice& lattice, uint32_t index, T* u) {
+  make<kBlock>(lattice, index, u);
+}
+template <class T>
+void block(const Lattice& lattice, uint32_t index, T* u) {
+  static const auto function = __builtin_cpu_supports("avx2") ? block_avx2<T> : block_any<T>;
+  function(lattice, index, u);
+}
+#else
+template <class T>
+void block(const Lattice& lattice, uint32_t index, T* u) {
+  block_any(lattice, index, u);
+}
+#endif
 
 /// An extensible rank-1 lattice: its first 2^n points are a lattice for each n. Most noise of an image comes from edges
 /// in the pixel, in the light's shadow and between scattered directions; a lattice whose points are far apart estimates
@@ -112,7 +160,9 @@ class LatticeSampler final : public SamplerBase {
       const auto first = uint32_t(index);  // sequences of 2^32 samples are concatenated
       const auto end = uint32_t(std::min<uint64_t>(samples.count, at + ((uint64_t{1} << 32) - first)));
       const Lattice numbers = lattice(samples, index >> 32, dimension);
-      for (uint32_t i = at; i < end; ++i) numbers.put(first + (i - at), u[i]);
+      uint32_t i = at;
+      for (; i + kBlock <= end; i += kBlock) block(numbers, first + (i - at), u + i);
+      for (; i < end; ++i) make<1>(numbers, first + (i - at), u + i);
       at = end;
     }
   }
