@@ -17,8 +17,8 @@ struct PixelSamples {
   uint32_t count = 1;
 };
 
-/// Dimensions of a camera ray and of the first vertex of its path. A sampler may distribute those of film, light and
-/// direction well together. Later vertices continue with their own numbers.
+/// Dimensions of a camera ray and of the first vertex of its path, which a sampler may distribute well together. The
+/// numbers of later vertices follow from `count` on.
 enum class Dimension : uint32_t { wavelengths, film, lens, time, light, on_light, lobe, direction, count };
 
 /// Generator of sample values in [0, 1), as pbrt's Sampler. A value depends only on the seed, the pixel, the 64-bit

@@ -8,49 +8,11 @@
 #include "core/sampling.h"
 #include "integrators/lane_set.h"
 #include "integrators/path_parts.h"
+#include "integrators/path_state.h"
+#include "integrators/vertex_numbers.h"
 
 namespace frond {
 namespace {
-
-/// Uses of random streams at one path vertex.
-enum class Use : uint64_t {
-  ray,
-  shadow_ray,
-  light_bsdf,
-  bsdf,
-  roulette,
-  albedo,
-  second_shadow_ray,
-  second_light_bsdf,
-  second_bsdf,
-};
-
-/// Key of the random numbers of one vertex: of its rays, and of its streams by use.
-struct VertexKey {
-  uint64_t value;
-
-  /// The step differs from that of a stream's counter, so that streams do not overlap.
-  uint64_t of(Use use) const { return value + uint64_t(use) * 0xd1342543de82ef95ull; }
-  RandomStream stream(Use use) const { return RandomStream(of(use)); }
-};
-
-/// State of a path.
-struct Path {
-  Ray ray;
-  SampledWavelengths lambda;
-  SampledSpectrum throughput;
-  /// Density of the last direction, 1/sr, for MIS with light sampling: the sum over the rays that the last vertex
-  /// scattered; infinite if no light sample competes.
-  float scatter_pdf;
-  float light_samples;               ///< number of light samples at the last vertex, for MIS
-  float scattered_rays;              ///< number of rays that the current vertex scatters, for MIS
-  float share;                       ///< factor on what the path finds: 1/2 if its first vertex scattered two rays
-  float power_factor;                ///< factor by which refraction alone has divided the throughput
-  int depth;                         ///< scattering events so far
-  bool is_wide;                      ///< one of them was not specular
-  LightSelector::LitPoint previous;  ///< the last vertex
-  VertexKey key;                     ///< of the current vertex
-};
 
 /// Traces the paths of a bundle together, one vertex after the other.
 class PathTracer final : public Tracer {
@@ -67,7 +29,6 @@ class PathTracer final : public Tracer {
  private:
   static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
   static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
-  static constexpr size_t kFew = 4;                        ///< for more paths, numbers of all are as fast
 
   /// Traces all paths with the first rays that their first vertices scatter, then with the second ones.
   void trace() {
@@ -399,41 +360,10 @@ class PathTracer final : public Tracer {
     return sum;
   }
 
-  /// Sampler dimensions of one vertex.
-  enum class Number : uint32_t { light, on_light, lobe, direction, count };
-
-  void get(const PixelSamples& samples, uint32_t dimension, float* u) const {
-    bundle_->sampler.get1d(samples, dimension, u);
-  }
-  void get(const PixelSamples& samples, uint32_t dimension, Vec2* u) const {
-    bundle_->sampler.get2d(samples, dimension, u);
-  }
-
-  /// Numbers by path, of a first sample and of a second one.
+  /// Draws the sampler's numbers of this vertex for these paths, two for the `twins` among them.
   template <class T>
-  using Numbers = std::array<std::array<T, kMost>, 2>;
-
-  /// Draws the sampler's numbers for these paths; for the `twins` among them those of samples 2 i and 2 i + 1, so that
-  /// all first and second ones together are as well distributed as those of twice as many samples.
-  template <class T>
-  void draw(const LaneSet& lanes, const LaneSet& twins, Number number, Numbers<T>& u) const {
-    const uint32_t dimension =
-        bundle_->dimension + uint32_t(place_of_numbers()) * uint32_t(Number::count) + uint32_t(number);
-    const PixelSamples& s = bundle_->samples;
-    const LaneSet others(lanes.bits() & ~twins.bits());
-    if (others.size() > kFew) {
-      get(s, dimension, u[0].data());
-    } else {
-      for (const size_t i : others) get({s.x, s.y, s.first + i, 1}, dimension, &u[0][i]);
-    }
-    if (twins.empty()) return;
-    std::array<T, 2 * kMost> both;
-    if (twins.size() > kFew) {
-      get({s.x, s.y, 2 * s.first, 2 * s.count}, dimension, both.data());
-    } else {
-      for (const size_t i : twins) get({s.x, s.y, 2 * (s.first + i), 2}, dimension, &both[2 * i]);
-    }
-    for (const size_t i : twins) u[0][i] = both[2 * i], u[1][i] = both[2 * i + 1];
+  void draw(const LaneSet& lanes, const LaneSet& twins, Number number, TwinNumbers<T>& u) const {
+    draw_numbers(*bundle_, place_of_numbers(), number, lanes, twins, u);
   }
 
   const World& world_;
@@ -454,8 +384,8 @@ class PathTracer final : public Tracer {
   std::array<Lit, kMost> lit_;
   std::array<Ray, kMost> shadow_rays_;
   std::array<uint64_t, kMost> shadow_keys_;
-  Numbers<float> numbers_;
-  Numbers<Vec2> pairs_;
+  TwinNumbers<float> numbers_;
+  TwinNumbers<Vec2> pairs_;
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo,
 
 /// Sampler dimensions of one vertex.
 enum class Number : uint32_t { light, on_light, lobe, direction, distance, count };
+static_assert(uint32_t(Dimension::light) + uint32_t(Number::direction) == uint32_t(Dimension::direction));
 
 constexpr Param kVolPath[] = {
     {.name = "maxdepth",

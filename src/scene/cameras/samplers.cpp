@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 #include "core/sampler.h"
 
@@ -168,7 +169,7 @@ class LatticeSampler final : public SamplerBase {
   }
 
   Lattice lattice(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
-    // The pair (1, kSecond) has the least variance for random edges in a pixel, over all 2^n points.
+    // From a search: 2^n points of the pair (1, kSecond) have a small variance for random edges in a pixel, for all n.
     constexpr uint32_t kSecond = 0x4da614d3;
     const uint64_t pixel = sample_key(seed(), samples.x, samples.y, sequence);
     const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), shifts = mix64(key);
@@ -182,8 +183,8 @@ class LatticeSampler final : public SamplerBase {
   }
 
   /// Factors of the dimensions, by Dimension, that form one lattice together; 0 for all others, which shuffle the
-  /// samples. They have the least variance for random half-spaces of two or three pairs, and where the pair of the
-  /// light or of the direction is drawn twice for each sample (scripts/lattice --search).
+  /// samples. From searches for a small variance of random half-spaces of two and three pairs, and where the pair of
+  /// the light or of the direction is drawn twice for each sample (scripts/lattice).
   static constexpr uint32_t factor(uint32_t dimension) {
     constexpr uint32_t kFilm = 1, kLens = 409, kTime = 2491, kOnLight = 887, kDirection = 6595;
     constexpr uint32_t kFactors[] = {0, kFilm, kLens, kTime, 0, kOnLight, 0, kDirection};
@@ -204,9 +205,8 @@ extern const SamplerInfo independent_sampler{
     make_sampler<IndependentSampler>};
 extern const SamplerInfo lattice_sampler{
     {"sampler", "lattice",
-     "A lattice with a random shift in each pixel, for the place in the pixel, the light sample and the first "
-     "scattered "
-     "direction together; shuffled anew for all other numbers.",
+     "Points of a rank-1 lattice, shifted at random in each pixel: the numbers of the camera ray and of the first hit "
+     "are well distributed together, those of later hits each for themselves.",
      "Cranley and Patterson 1976; Dammertz and Keller 2008, Image Synthesis by Rank-1 Lattices", kSamplerParams},
     make_sampler<LatticeSampler>};
 
