@@ -9,6 +9,7 @@ from tools import ROOT, arguments, table, write_section
 
 SOURCE = (ROOT / "src/scene/cameras/samplers.cpp").read_text(encoding="utf-8")
 SECOND = int(re.search(r"kSecond = (0x[0-9a-f]+)", SOURCE)[1], 16)
+REORDER = int(re.search(r"kReorder = (0x[0-9a-f]+)", SOURCE)[1], 16)
 FACTORS = {name: int(re.search(rf"{constant} = (\d+)", SOURCE)[1]) for name, constant in
            [("film", "kFilm"), ("lens", "kLens"), ("on_light", "kOnLight"), ("direction", "kDirection")]}
 COUNTS = [16, 64, 256, 1024]
@@ -39,11 +40,13 @@ class HalfSpaces:
         return numpy.mean([(self.inside(make()) - self.volume) ** 2 for _ in range(rounds)])
 
 
-def lattice(count, factors, twice=False):
-    """Point sets of one pixel each, without reflections. The radical inverses of 2^n samples are all multiples of 2^-n."""
-    total = 2 * count if twice else count
+def lattice(count, factors, twice=False, stride=1):
+    """Point sets of one pixel each, without reflections. The radical inverses of 2^n samples are all multiples of 2^-n; those of
+    every `stride`-th sample are the first of them."""
+    total = 2 * count if twice else count * stride
+    factors = factors if stride == 1 else [k * REORDER % total for k in factors]
     by = numpy.array([[k, k * SECOND] for k in factors]) * ([[2], [1]] if twice else 1)
-    points = numpy.outer(numpy.arange(total), by.ravel() % total) % total / total
+    points = numpy.outer(numpy.arange(total // stride), by.ravel() % total) % total / total
     return lambda: (points + random.random(points.shape[1])) % 1
 
 
@@ -68,11 +71,11 @@ class Measure:
     def rounds_of(self, count):
         return max(3, self.rounds * 64 // (64 + count))
 
-    def ratio(self, count, factors, twice=False):
+    def ratio(self, count, factors, twice=False, stride=1):
         pairs, rounds = len(factors), self.rounds_of(count)
         if (count, pairs, twice) not in self.known:
             self.known[count, pairs, twice] = self.spaces[pairs].variance(sobol(count, pairs, twice), 2 * rounds)
-        return self.spaces[pairs].variance(lattice(count, factors, twice), rounds) / self.known[count, pairs, twice]
+        return self.spaces[pairs].variance(lattice(count, factors, twice, stride), rounds) / self.known[count, pairs, twice]
 
 
 def search(measure):
@@ -117,6 +120,8 @@ def main():
     for name, dimensions in CASES.items():
         factors = [FACTORS[d] for d in dimensions if d != "twice"]
         rows.append([name] + [f"{measure.ratio(count, factors, 'twice' in dimensions):.2f}" for count in COUNTS])
+    for stride, name in ((2, "second"), (4, "fourth"), (8, "eighth")):
+        rows.append([f"film, every {name} sample"] + [f"{measure.ratio(count, [1], stride=stride):.2f}" for count in COUNTS])
     spaces = measure.spaces[3]
     joint = [spaces.variance(lambda n=count: qmc.Sobol(6, seed=random).random(n), 2 * measure.rounds_of(count))
              for count in COUNTS]

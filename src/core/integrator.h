@@ -46,8 +46,8 @@ struct SurfaceError : std::runtime_error {
 struct PathResult {
   SampledSpectrum radiance;
   FirstHit first;
-  int scatterings = 0;     ///< number of scatterings
-  bool escaped = false;    ///< the path left the scene; otherwise it was absorbed or terminated
+  int scatterings = 0;     ///< number of scatterings; of the first path where the first hit scatters two rays
+  bool escaped = false;    ///< that path left the scene; otherwise it was absorbed or terminated
   PlugInFault fault = {};  ///< the last one on the path
 };
 
@@ -94,8 +94,9 @@ class Integrator {
   virtual ~Integrator() = default;
   /// Called once, before the first path.
   virtual void prepare(const World&) {}
-  /// Called once, after `prepare`. What an integrator adapts may change its noise and speed alone.
-  virtual void adapt(const World&, const PilotRays&) {}
+  /// Called once, after `prepare`. What an integrator adapts may change its noise and speed alone. Returns what it
+  /// selected, as a line for the log; empty if there is nothing to say.
+  virtual std::string adapt(const World&, const PilotRays&) { return {}; }
   /// Returns a tracer for one thread, not null. The world and the integrator outlive it. Thread-safe.
   virtual std::unique_ptr<Tracer> tracer(const World& world) const = 0;
 };

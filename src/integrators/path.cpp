@@ -1,3 +1,8 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "integrators/path_parts.h"
 #include "integrators/path_pilots.h"
 #include "integrators/path_tracer.h"
@@ -21,14 +26,14 @@ constexpr Param kPath[] = {
      .default_value = 0,
      .range = {0, 2},
      .doc = "Light samples at the first hit; later hits have one. 0: one or two, whichever has less noise in the same "
-            "time; a pilot decides."},
+            "time, by a pilot; always one where all lights are points or directions."},
     {.name = "scatteredrays",
      .kind = ParamKind::integer,
      .default_value = 0,
      .range = {0, 2},
-     .doc = "Rays that the first hit scatters where its surface is not a mirror; later hits scatter one. 0: two where "
-            "materials reflect and transmit light and return at least 3/4 of it, and where no light is sampled (a "
-            "uniform sky) if that has less noise in the same time; a pilot decides."},
+     .doc = "Rays that the first hit scatters where its surface is not a mirror; later hits scatter one. 0: two on "
+            "materials that reflect and transmit light and return at least 3/4 of it, and, if the scene has no light "
+            "to sample (a uniform sky), on all others too if that has less noise in the same time, by a pilot."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
@@ -65,13 +70,15 @@ class PathIntegrator final : public Integrator {
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
 
   /// Selects the numbers of scattered rays and of light samples at the first vertex.
-  void adapt(const World& world, const PilotRays& rays) override {
+  std::string adapt(const World& world, const PilotRays& rays) override {
+    std::vector<std::string> selected;
     try {
-      adapt_scattered_rays(world, rays);
-      adapt_light_samples(world, rays);
+      adapt_scattered_rays(world, rays, selected);
+      adapt_light_samples(world, rays, selected);
     } catch (const SurfaceError&) {
       // The render throws it again, and its caller names the material.
     }
+    return selected.empty() ? "" : fmt::format("path: at first hits {}", fmt::join(selected, ", "));
   }
 
   std::unique_ptr<Tracer> tracer(const World& world) const override {
@@ -79,19 +86,25 @@ class PathIntegrator final : public Integrator {
   }
 
  private:
-  void adapt_scattered_rays(const World& world, const PilotRays& rays) {
+  void adapt_scattered_rays(const World& world, const PilotRays& rays, std::vector<std::string>& selected) {
     if (settings_.scattered_rays != 0) return;
-    if (selector_.empty() && two_rays_pay(world, selector_, settings_, rays))
+    if (selector_.empty() && two_rays_pay(world, selector_, settings_, rays)) {
       settings_.scattered_rays = 2;
-    else
-      settings_.bright = bright_materials(world, rays);
+      selected.push_back("two scattered rays");
+      return;
+    }
+    settings_.bright = bright_materials(world, rays);
+    if (const auto bright = std::ranges::count(settings_.bright, true); bright > 0)
+      selected.push_back(fmt::format("two scattered rays on {} bright material{}", bright, bright == 1 ? "" : "s"));
   }
 
-  void adapt_light_samples(const World& world, const PilotRays& rays) {
+  void adapt_light_samples(const World& world, const PilotRays& rays, std::vector<std::string>& selected) {
     if (settings_.light_samples != 0) return;
     settings_.light_samples = 1;
     if (!settings_.sample_lights || !selector_.has_extent()) return;
-    if (two_light_samples_pay(world, selector_, settings_, rays)) settings_.light_samples = 2;
+    if (!two_light_samples_pay(world, selector_, settings_, rays)) return;
+    settings_.light_samples = 2;
+    selected.push_back("two light samples");
   }
 
   PathSettings settings_;

@@ -43,7 +43,7 @@ class PathPilot {
 
 /// The same camera rays, followed by other random numbers.
 PathBundle with_other_numbers(PathBundle bundle) {
-  constexpr uint32_t kFar = 1 << 20;  // beyond the dimensions of any path
+  constexpr uint32_t kFar = 1 << 24;  // beyond the dimensions of any path
   bundle.dimension += kFar;
   for (uint64_t& key : bundle.keys) key = hash_key(key, kFar);
   return bundle;
@@ -82,8 +82,8 @@ std::optional<double> two_sided_albedo(const SurfacePoint& point, const PathBund
 
 std::vector<bool> bright_materials(const World& world, const PilotRays& rays) {
   constexpr size_t kStep = 4;  // every fourth camera ray
-  constexpr double kMost = 0.75;
-  std::vector<double> excess;  // by material: sum of albedos less kMost
+  constexpr double kLeastAlbedo = 0.75;
+  std::vector<double> excess;  // by material: sum of albedos less kLeastAlbedo
   std::vector<bool> is_met;
   Arena arena;
   SurfacePoint point;
@@ -97,7 +97,7 @@ std::vector<bool> bright_materials(const World& world, const PilotRays& rays) {
       with_surface_of_errors(at, [&] { albedo = two_sided_albedo(point, bundle, i, arena); });
       if (!albedo) continue;
       if (excess.size() <= point.material_id) excess.resize(point.material_id + 1), is_met.resize(excess.size());
-      excess[point.material_id] += *albedo - kMost;
+      excess[point.material_id] += *albedo - kLeastAlbedo;
       is_met[point.material_id] = true;
     }
   }

@@ -210,8 +210,7 @@ class PathTracer final : public Tracer {
   }
 
   void add_light_samples(const LaneSet& lanes, size_t which, Use bsdf, Use shadow_ray) {
-    LaneSet lit;
-    bool alike = vertex_ == 0;
+    LaneSet lit, coherent;
     for (const size_t i : lanes) {
       const SurfacePoint& point = points_[i];
       at_ = &point;
@@ -243,11 +242,11 @@ class PathTracer final : public Tracer {
       set_shadow_ray(point.hit, *sample, path.ray.time, shadow_rays_[i]);
       shadow_keys_[i] = path.key.of(shadow_ray);
       lit.add(i);
-      alike = alike && (light->is_delta() || !light->is_distant() || light->sun());
+      if (vertex_ == 0 && (light->is_delta() || !light->is_distant() || light->sun())) coherent.add(i);
     }
     at_ = nullptr;
     bundle_->traced += lit.size();
-    const uint32_t dark = alike ? occluded_alike(lit) : occluded(lit);
+    const uint32_t dark = occluded_together(coherent) | occluded(LaneSet(lit.bits() & ~coherent.bits()));
     for (const size_t i : LaneSet(lit.bits() & ~dark)) add(i, *lit_[i].light, lit_[i].radiance, lit_[i].weight);
   }
 
@@ -260,7 +259,7 @@ class PathTracer final : public Tracer {
   }
 
   /// The same in packets, for coherent rays: toward delta or nearby lights, or mostly to a sun, from the first hit.
-  uint32_t occluded_alike(const LaneSet& lit) const {
+  uint32_t occluded_together(const LaneSet& lit) const {
     uint32_t dark = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
       const RayPacket packet{&shadow_rays_[first], &shadow_keys_[first], lit.bits() >> first & kPacket};
@@ -383,7 +382,7 @@ class PathTracer final : public Tracer {
   std::array<LocalBsdf, kMost> bsdfs_;
   std::array<Lit, kMost> lit_;
   std::array<Ray, kMost> shadow_rays_;
-  std::array<uint64_t, kMost> shadow_keys_;
+  std::array<uint64_t, kMost> shadow_keys_{};
   TwinNumbers<float> numbers_;
   TwinNumbers<Vec2> pairs_;
 };

@@ -297,15 +297,17 @@ class VolPathTracer final : public Tracer {
     result().radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());
   }
 
-  /// Counts a scattering. Russian roulette as in the integrator path, on the throughput relative to its density.
+  /// Russian roulette as in the integrator path, on the throughput relative to its density; counts a scattering that
+  /// survives.
   bool survives() {
-    result().scatterings = ++depth_;
     const float density = mean(path_.r_u, lambda_);
     if (path_.beta.is_black() || !(density > 0)) return false;
     const float survival = path_.beta.max() * power_factor_ / density;
-    if (depth_ < kSafeScatterings || survival >= 1) return true;
-    if (stream(Use::roulette).uniform() >= survival) return false;
-    path_.beta *= 1 / survival;
+    if (depth_ + 1 >= kSafeScatterings && survival < 1) {
+      if (stream(Use::roulette).uniform() >= survival) return false;
+      path_.beta *= 1 / survival;
+    }
+    result().scatterings = ++depth_;
     return true;
   }
 

@@ -160,7 +160,7 @@ class Worker {
     for (size_t i = 0; i < kBundle; ++i) {
       if (!(b.lanes >> i & 1)) continue;
       const Vec2 on = on_filter[i];
-      if (job_.pixel_jitter)
+      if (job_.pixel_jitter && !job_.camera.pixels_are_apart())
         filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
       else
         filter_[i] = {{0, 0}, 1};
@@ -291,14 +291,16 @@ int film_exponent(const RenderJob& job, const FilmSettings& settings) {
     check_stop();
     RandomStream place(hash_key(job.seed, i));
     const int x = int(place.uniform() * float(settings.width)), y = int(place.uniform() * float(settings.height));
-    PathBundle bundle{.sampler = job.sampler, .samples = {x, y, i, PathBundle::kMost}, .lanes = 1, .wanted = 1};
+    const size_t lane = i % PathBundle::kMost;
+    PathBundle bundle{.sampler = job.sampler, .samples = {x, y, i - lane, PathBundle::kMost}, .lanes = 1u << lane};
+    bundle.wanted = bundle.lanes;
     float u;
     job.sampler.get1d({x, y, i}, uint32_t(Dimension::wavelengths), &u);
-    bundle.lambda[0] = job.wavelengths.sample_in_turn(i, u);
-    bundle.rays[0] = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
-    bundle.keys[0] = sample_key(job.seed, x, y, i);
+    bundle.lambda[lane] = job.wavelengths.sample_in_turn(i, u);
+    bundle.rays[lane] = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
+    bundle.keys[lane] = sample_key(job.seed, x, y, i);
     tracer->trace(bundle);
-    const SensorResponse r = job.wavelengths.sensor(bundle.results[0].radiance, bundle.lambda[0]);
+    const SensorResponse r = job.wavelengths.sensor(bundle.results[lane].radiance, bundle.lambda[lane]);
     const double value = std::max({r[0], r[1], r[2], r[3]}) * settings.exposure;
     if (value > 0 && std::isfinite(value)) brightest.push_back(value);
   }

@@ -23,6 +23,7 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   std::array<float, kSamples> time{};
   sampler.get2d(bundle.samples, uint32_t(Dimension::film), on_film.data());
   if (scene_.camera().uses_lens()) sampler.get2d(bundle.samples, uint32_t(Dimension::lens), on_lens.data());
+  if (!scene_.has_pixel_jitter()) on_film.fill({0.5f, 0.5f}), on_lens.fill({0.5f, 0.5f});
   if (scene_.has_motion()) sampler.get1d(bundle.samples, uint32_t(Dimension::time), time.data());
   bundle.lambda.fill(scene_.wavelengths().sample_in_turn(pixel, place.uniform()));
   for (uint32_t k = 0; k < kSamples; ++k) {

@@ -148,7 +148,8 @@ class SceneBuilder {
     check_rays(b);
     build_tiling();
     scene_.integrator_->prepare(scene_);
-    scene_.integrator_->adapt(scene_, ScenePilotRays(scene_));
+    if (const std::string adapted = scene_.integrator_->adapt(scene_, ScenePilotRays(scene_)); !adapted.empty())
+      log_.info(adapted);
   }
 
   template <class Info, class... Args>

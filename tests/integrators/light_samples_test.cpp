@@ -17,6 +17,7 @@ std::string scene(const std::string& integrator, const char* albedo, bool is_box
 LookAt 0 -1 1  0 0 0  0 1 0
 Camera "perspective" "float fov" 50
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32 {}
+Sampler "independent"
 PixelFilter "box"
 Integrator "path" "integer maxdepth" 50 {}
 WorldBegin

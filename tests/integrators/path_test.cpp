@@ -14,8 +14,10 @@ using testing::render_text;
 using testing::RenderSettings;
 
 /// All ways in which lights are found.
-constexpr const char* kDirect[] = {"\"integer lightsamples\" 1", "\"integer lightsamples\" 2",
-                                   "\"bool sampledirect\" false"};
+constexpr const char* kDirect[] = {
+    "\"integer lightsamples\" 1 \"integer scatteredrays\" 1", "\"integer lightsamples\" 2 \"integer scatteredrays\" 1",
+    "\"integer lightsamples\" 1 \"integer scatteredrays\" 2", "\"integer lightsamples\" 2 \"integer scatteredrays\" 2",
+    "\"bool sampledirect\" false"};
 
 /// z-tests below use 5 standard errors: a false alarm in 1.7 million for each.
 constexpr double kSigmas = 5;
@@ -64,7 +66,8 @@ TEST(Path, LosslessGlassAroundWhiteIsNotSeenInAFurnace) {
       "Material \"diffuse\" \"spectrum reflectance\" [360 1 2500 1]\n"
       "Shape \"sphere\" \"float radius\" 0.3\n";
   for (const std::string integrator :
-       {"\"integer maxdepth\" 100000", "\"integer maxdepth\" 100000 \"float cutoff\" 0.5"})
+       {"\"integer maxdepth\" 100000",
+        "\"integer maxdepth\" 100000 \"string termination\" \"attenuation\" \"float cutoff\" 0.5"})
     for (const std::string& world : {sky + glass, sky + glass + white}) {
       const Film film = render_text(looking_down(world, 0.6, 8, integrator), {.samples = 64});
       // No path weighs more or less than another: without noise, but for what floats round.

@@ -18,6 +18,7 @@ std::string scene(const std::string& integrator, const char* bright, const char*
 LookAt 0 -1 3  0 0 0  0 1 0
 Camera "perspective" "float fov" 50
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32 {}
+Sampler "independent"
 PixelFilter "box"
 Integrator "path" "integer maxdepth" 50 "integer lightsamples" 1 {}
 WorldBegin

@@ -111,6 +111,23 @@ TEST(LatticeSampler, EdgesHaveLessVarianceThanWithSobolsSequence) {
   EXPECT_LT(half_space_error(*sampler, {kFilm, kLater}, 256), 0.5) << "later pairs are not the same points";
 }
 
+// Bands are dealt out to the samples of a pixel in turn: where there are 8, 16 or 32 lanes' worth of them, a band has
+// every second, fourth or eighth sample, which must cover the whole pixel.
+TEST(LatticeSampler, SamplesInTurnCoverThePixel) {
+  const auto sampler = make("lattice", 1);
+  constexpr uint32_t kCount = 1024;
+  std::array<Vec2, kCount> u;
+  for (int pixel = 0; pixel < 8; ++pixel) {
+    sampler->get2d({pixel, 0, 0, kCount}, kFilm, u.data());
+    for (const size_t stride : {2, 4, 8}) {
+      std::set<int> columns, rows;
+      for (size_t i = 0; i < kCount; i += stride) columns.insert(int(u[i].x * 16)), rows.insert(int(u[i].y * 16));
+      EXPECT_EQ(columns.size(), 16u) << stride;
+      EXPECT_EQ(rows.size(), 16u) << stride;
+    }
+  }
+}
+
 /// Correlation of the errors of two pairs of dimensions, pixel by pixel, for the mean of a function with an edge; r
 /// sqrt(n) is standard normal where they are independent, so 5 means a false alarm in 1.7 million.
 double correlation_score(const Sampler& a, int offset_x, uint32_t dimension_a, const Sampler& b, int offset_y,
@@ -162,11 +179,14 @@ TEST(Samplers, ASampleHasItsNumbersWhateverElseIsAskedFor) {
   }
 }
 
-TEST(Samplers, NumbersLieBelowOne) {
-  for (const std::string_view name : {"lattice", "independent"}) {
-    std::vector<Vec2> numbers(100000);
-    make(name, 3)->get2d({0, 0, 0, uint32_t(numbers.size())}, 0, numbers.data());
-    for (const Vec2 u : numbers) ASSERT_TRUE(u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1) << name;
+// Of 2^25 points one lies in the last 2^-25, where a float would round to 1.
+TEST(LatticeSampler, NumbersLieBelowOne) {
+  const auto sampler = make("lattice", 3);
+  std::vector<float> u(1 << 16);
+  for (uint64_t first = 0; first < 1u << 25; first += u.size()) {
+    sampler->get1d({0, 0, first, uint32_t(u.size())}, kTime, u.data());
+    ASSERT_LT(*std::ranges::max_element(u), 1);
+    ASSERT_GE(*std::ranges::min_element(u), 0);
   }
 }
 

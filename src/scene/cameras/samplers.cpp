@@ -171,10 +171,14 @@ class LatticeSampler final : public SamplerBase {
   Lattice lattice(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
     // From a search: 2^n points of the pair (1, kSecond) have a small variance for random edges in a pixel, for all n.
     constexpr uint32_t kSecond = 0x4da614d3;
+    // A factor of all joint dimensions: 2^n samples remain the same points, in another order. With bands, a wavelength
+    // has every 2^k-th sample (sample_in_turn), whose radical inverses lie in one interval of length 2^-k; this factor
+    // spreads them over the whole lattice. From a search for a small variance of edges by such samples.
+    constexpr uint32_t kReorder = 0xc053704b;
     const uint64_t pixel = sample_key(seed(), samples.x, samples.y, sequence);
     const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), shifts = mix64(key);
     const uint32_t joint = factor(dimension);
-    Lattice numbers{joint != 0 ? 0 : uint32_t(key >> 32) | 1u, joint != 0 ? joint : 1, 0, uint32_t(shifts),
+    Lattice numbers{joint != 0 ? 0 : uint32_t(key >> 32) | 1u, joint != 0 ? joint * kReorder : 1, 0, uint32_t(shifts),
                     uint32_t(shifts >> 32)};
     numbers.factor_y = numbers.factor_x * kSecond;
     if (key & 1) std::swap(numbers.factor_x, numbers.factor_y);
