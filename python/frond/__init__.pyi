@@ -13,7 +13,7 @@ from ._session import (Image as Image, Scene as Scene, Session as Session, defau
 
 __version__: str
 
-def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Render a pbrt-v4 scene file.
 
     scene: Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the next file begins another.
@@ -49,7 +49,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     disable_wavelength_jitter: Use the same wavelengths for all samples.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
-    json: Print the statistics as JSON on standard output."""
+    json: JSON file to write; - is standard output."""
 
 def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[str, str] = 'abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert', output: str | os.PathLike | None = None, *, reference: str | os.PathLike = 'abm,mode=weighted', rms: float | Sequence[float] | str | None = None, target: str | os.PathLike | None = None, relative: bool = False, leaf: str | Sequence[str] | Mapping[str, str] | None = None, wavelengths: str | os.PathLike | None = None, size: int | None = None, spp: int | None = None, reference_spp: int | None = None, exposure: float | None = None, seed: int | None = None, quick: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the cost and the error of each leaf model in a scene.
@@ -110,7 +110,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
 
     leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as FILE.leaf the complete material for other programs.
 
-    leaf: MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name leaf_simplified.
+    leaf: MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name leaf_simplified, for FILE.leaf leaf_solved.
     specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     method: Method: solve (deterministic, without noise) or montecarlo (random walks, as published). One of solve, montecarlo. Default: solve.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
@@ -336,7 +336,7 @@ def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.Pa
     """Average linear images, and write the mean as EXR or through a display transform.
 
     images: EXR files of one size and colour space.
-    output: Image to write: .png, .jpg or .exr.
+    output: Image to write: .png, .jpg or .exr; it has the channels R, G and B.
     bands: Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy light is 1. Unit: nm. Range: above 0.
     exposure: Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops. Default: 0.
     white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
@@ -344,15 +344,15 @@ def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.Pa
     view: View of the display.
     color_space: Colour space of images that do not state one, as after other programs, such as linear SMPTE-C or XYZ; by default linear sRGB (Rec. 709), as OpenEXR defines."""
 
-def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, scale: float = 0.1, *, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, scale: float = 0.1, *, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Measure the RMS error between two renders, with noise and bias separated.
 
     images: A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.
     output: Image of the signed difference in luminance: red where A is brighter, blue where B is.
     scale: Luminance difference that is drawn in full colour. Range: above 0. Default: 0.1.
-    json: Print JSON."""
+    json: JSON file to write; - is standard output."""
 
-def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write a job that renders ranges of samples and merges them, for Slurm, Open Job Description or Snakemake; --run starts it.
 
     The options of frond render are passed on to the tasks.
@@ -395,7 +395,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     disable_wavelength_jitter: Use the same wavelengths for all samples.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
-    json: Print the statistics as JSON on standard output."""
+    json: JSON file to write; - is standard output."""
 
 def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Merge parts of a render, written by frond render --part.

@@ -185,7 +185,7 @@ DECIDING = {"scene": None, "wavelengths": "smpte", "swap": "leaf=leaf_lambert", 
             "ignore-unsupported": "all"}
 #: Those that do not: the samples and pixels of a part are in its coverage, not in its identity.
 COVERAGE = {"spp", "crop", "pixels", "pixel", "samples", "max-rms", "time-limit"}
-INDIFFERENT = {"threads": "1", "quiet": "true", "checkpoint": "0.05", "no-cache": "true", "strict": "true", "json": "true",
+INDIFFERENT = {"threads": "1", "quiet": "true", "checkpoint": "0.05", "no-cache": "true", "strict": "true", "json": "statistics.json",
                "display-server": "127.0.0.1:9"}
 
 

@@ -32,7 +32,7 @@ class Pair:
 
     def against(self, reference):
         """RMS noise of one render, and the upper 95 % bound of the bias: over pixels and colours."""
-        found = program_json("difference", *self.images, *reference.images, "--json")
+        found = program_json("difference", *self.images, *reference.images, "--json", "-")
         noise, bias = (rms([found[f"{key}_{c}"] for c in ("red", "green", "blue")]) for key in ("noise_a", "bias_upper"))
         return numpy.sqrt(2) * noise, bias
 

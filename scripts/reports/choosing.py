@@ -65,7 +65,7 @@ class Error:
     """Mean square errors against the reference, over all pixels and channels."""
 
     def __init__(self, render, reference):
-        j = program_json("difference", *render.images, *reference.images, "--json")
+        j = program_json("difference", *render.images, *reference.images, "--json", "-")
         # Channels are correlated: their mean standard error is an upper bound for that of their mean.
         self.bias, self.bias_error = (mean_of(j, key) for key in ("bias_squared", "bias_squared_error"))
         self.noise, self.reference_noise = (mean_of(j, f"noise_{which}", 2) for which in "ab")
@@ -86,7 +86,7 @@ def root(square):
 def choose(scene, request, seed, samples, *more):
     """The pilot's selection for a request, for a render of `samples` samples per pixel. With "--pilot" it is made even if the
     pilot cannot pay."""
-    found = program_json("render", scene, "--swap", f"*=leaf,model=auto,maxrms={request}", "--seed", seed, "--spp", samples, "--json",
+    found = program_json("render", scene, "--swap", f"*=leaf,model=auto,maxrms={request}", "--seed", seed, "--spp", samples, "--json", "-",
                          *more)
     return found.get("choice", found)
 
@@ -133,7 +133,7 @@ class Bench:
         if samples > self.options.most_full_samples:
             return None
         render(self.scene, models_of(choice), samples, seed, image)
-        j = program_json("difference", image, image, *self.reference.images, "--json")
+        j = program_json("difference", image, image, *self.reference.images, "--json", "-")
         return root(mean_of(j, "rms", 2) - mean_of(j, "noise_b", 2))
 
 
@@ -187,7 +187,7 @@ class FullSize:
         self.samples = int(first["reference_samples_needed"])
         image = folder / f"chosen-{FULL_SEEDS[0]}.exr"
         command = program_json("render", scene, "--swap", f"*=leaf,model=auto,maxrms={request}", "--seed", FULL_SEEDS[0], "--spp",
-                               self.samples, "-o", image, "--json")
+                               self.samples, "-o", image, "--json", "-")
         choice = command["choice"]
         self.chosen, self.pilot, self.seconds = name_of(choice), choice["pilot"]["cpu_seconds"], command["cpu_seconds"]
         chosen = Render(scene, models_of(choice), self.samples, FULL_SEEDS[1:2], folder, "chosen")

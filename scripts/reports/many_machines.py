@@ -60,7 +60,7 @@ def bytes_a_pixel(folder):
 def render_parts(folder, scene, count):
     """Parts of samples, the CPU time of a path, and the most memory of a render."""
     parts = [folder / f"samples_{i}.part" for i in range(count)]
-    uses = [use("render", scene, "--samples", f"{SAMPLES * i}:{SAMPLES * (i + 1)}", "--part", part, "-q", "--json", "--cache",
+    uses = [use("render", scene, "--samples", f"{SAMPLES * i}:{SAMPLES * (i + 1)}", "--part", part, "-q", "--json", "-", "--cache",
                 folder / "cache") for i, part in enumerate(parts)]
     seconds, paths = numpy.sum([[(report := json.loads(of.output))["cpu_seconds"], report["paths"]] for of in uses], axis=0)
     return parts, seconds / paths, max(of.megabytes for of in uses)

@@ -116,7 +116,7 @@ class Runs:
         name = f"ends-{s.name}-{model}-{cutoff:.3g}"
         return self.kept(name, lambda: program(
             "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--integrator", integrator, "--spp",
-            self.setting.ends_samples, *self.setting.ends, *self.threads, "-o", self.folder / "ends.exr", "--json", "-q"))
+            self.setting.ends_samples, *self.setting.ends, *self.threads, "-o", self.folder / "ends.exr", "--json", "-", "-q"))
 
     def half(self, s, model, half):
         return self.folder / f"{s.name}-{model}-{half}.exr"
@@ -129,13 +129,13 @@ class Runs:
                 reports[model].append(self.kept(f"{s.name}-{model}-{half}", lambda: program(
                     "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--spp",
                     self.setting.image_samples, "--seed", half, *self.setting.image, *self.threads, "-o",
-                    self.half(s, model, half), "--json", "-q")))
+                    self.half(s, model, half), "--json", "-", "-q")))
         return reports
 
     def difference(self, s):
         """Noise and bias of the difference of the two models' images."""
         halves = [self.half(s, model, half) for model in MODELS for half in (1, 2)]
-        return program_json("difference", *halves, "--json")
+        return program_json("difference", *halves, "--json", "-")
 
     def sheet(self, path):
         """Figures 5 to 7: a row for each set, a column for each model."""

@@ -111,7 +111,7 @@ def stages_of_scenes(frequency):
             scenes.write_pbrt(scenes.SCENES[name](folder), scene, leaves, True, 256, tables=True)
             command = [str(tools.FROND), "render", str(scene), "--spp", str(samples), "--threads", "1", "--wavelengths", "smpte",
                        "-o", str(folder / "image.exr")]
-            result = json.loads(tools.run(*command, "--json"))
+            result = json.loads(tools.run(*command, "--json", "-"))
             ways, *_ = profile([*command, "-q"], folder, frequency)
             count = stacks.stages(ways)
             del count[None]

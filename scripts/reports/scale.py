@@ -72,7 +72,7 @@ def measure(make, leaves):
         world = make(folder, leaves)
         scene = folder / "scene.pbrt"
         scene.write_text(SCENE.format(side=side_of(leaves), top=HEIGHT + RADIUS, pixels=PIXELS, samples=SAMPLES, world=world))
-        words = [str(FROND), "render", str(scene), "-o", str(folder / "out.exr"), "--json", "-q", "--wavelengths",
+        words = [str(FROND), "render", str(scene), "-o", str(folder / "out.exr"), "--json", "-", "-q", "--wavelengths",
                  "bands,wavelengths=800"]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as render:
             peak = 0

@@ -231,7 +231,7 @@ def images(report):
                 incident, seed = path.stem.split("-")
                 frond.load(ROOT / "scenes" / f"soybean-{scene}" / "scene.pbrt", wavelengths="smpte", seed=int(seed),
                            swap={"leaf": f"leaf_simplified,incident={incident}"}).render(spp).save(path)
-            d = program_json("difference", *halves, "--json")
+            d = program_json("difference", *halves, "--json", "-")
         body.append([scene] + [f"{d['leaf_mean_difference_' + c]:+.4f}" for c in ("red", "green", "blue")] +
                     [f"{d['leaf_bias_' + c]:.4f}" for c in ("red", "green", "blue")])
     report.add(f"""

@@ -217,7 +217,8 @@ int refuse(const CLI::App& app, const CLI::ParseError& error) {
   }
   std::ostringstream help, problem;
   const int code = app.exit(error, help, problem);
-  if (!problem.str().empty()) print_to_stderr(problem.str().substr(0, problem.str().find_last_not_of('\n') + 1));
+  if (!problem.str().empty())
+    print_to_stderr("frond: " + problem.str().substr(0, problem.str().find_last_not_of('\n') + 1));
   write_text("-", help.str());
   return code == 0 ? 0 : 1;
 }
@@ -240,6 +241,7 @@ std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const*
   const std::vector<Command> commands = add_commands(app);
   const CLI::App& render = *app.get_subcommand("render");
   std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, long_names(render));
+  if (!words.empty() && words[0] == "help") words = {words.size() > 1 ? words[1] : "--help", "--help"};
   std::ranges::reverse(words);  // CLI11 reads the words from the end
   try {
     app.parse(std::move(words));

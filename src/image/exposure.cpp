@@ -33,7 +33,8 @@ std::optional<ExposureChoice> parse_exposure(std::string_view text) {
   return ExposureChoice{stops, false};
 }
 
-/// Steps of a third, so that images with other noise get the same exposure as a rule.
+/// Steps of a third, in two digits: images with other noise get the same exposure as a rule, and a number of the header
+/// repeats it.
 ExposureMeter measure_exposure(const Image& image, std::string_view space) {
   constexpr double kMidGrey = 0.18, kDark = 0.002, kMayClip = 0.02, kSteps = 3;
   const Triple weights = luminance_weights(space);
@@ -58,7 +59,8 @@ ExposureMeter measure_exposure(const Image& image, std::string_view space) {
   const auto bright = lit.begin() + ptrdiff_t(double(lit.size() - 1) * (1 - kMayClip));
   std::ranges::nth_element(lit, bright);
   const double wanted = std::min(std::log2(kMidGrey) - mean, -std::log2(*bright));
-  meter.stops = std::clamp(std::round(wanted * kSteps) / kSteps, -kMostStops, kMostStops);
+  const double third = std::round(wanted * kSteps) / kSteps;
+  meter.stops = std::clamp(std::round(third * 100) / 100, -kMostStops, kMostStops);
   return meter;
 }
 

@@ -16,7 +16,7 @@ using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
     files_param("images", "EXR files of one size and colour space."),
-    output_param("Image to write: .png, .jpg or .exr.", true),
+    output_param("Image to write: .png, .jpg or .exr; it has the channels R, G and B.", true),
     JobParam(
         "bands", numbers,
         "Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy "
@@ -53,6 +53,9 @@ LinearFile read(const std::string& path, const JobRun& run) {
   if (file.is_assumed && given.empty())
     run.log().warn({}, fmt::format("{} does not state its colour space: {} is assumed; {} sets another one", path,
                                    kDefault, run.args.spelled("color-space")));
+  if (!file.is_assumed && !given.empty() && given != file.space)
+    run.log().warn({}, fmt::format("{} states its colour space, {}: {} has no effect", path, file.space,
+                                   run.args.spelled("color-space")));
   return file;
 }
 

@@ -23,7 +23,7 @@ constexpr JobParam kParams[] = {
     output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
     JobParam("scale", real, "Luminance difference that is drawn in full colour.",
              {.default_value = "0.1", .range = kAboveZero}),
-    JobParam("json", flag, "Print JSON."),
+    kJsonParam,
 };
 
 /// Colour of a difference: blue below 0 (`b` is brighter), red above, white at 0. The palette is safe for colour
@@ -68,6 +68,8 @@ std::vector<LinearFile> read_halves(const std::vector<std::string>& paths) {
 /// The bias estimate is the mean of (A1 - B1)(A2 - B2), so the two factors must be independent. A common seed within
 /// one factor, as in A1 and B1, is harmless.
 void warn_of_same_noise(const std::vector<LinearFile>& halves, const Log& log) {
+  if (halves[0].path == halves[2].path && halves[1].path == halves[3].path)
+    log.warn({}, "A and B are the same images: their difference is 0");
   for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}, {0u, 3u}, {1u, 2u}}) {
     const LinearFile &a = halves[i], &b = halves[j];
     if (a.path != b.path && (a.seed.empty() || a.seed != b.seed)) continue;
@@ -141,10 +143,10 @@ Result difference(const JobRun& run) {
   const auto halves = read_halves(run.args.texts("images"));
   warn_of_same_noise(halves, run.log());
   if (!output.empty()) write_difference(output, halves, run.args.real("scale"));
-  Result result{.tables = {{"difference"}}, .is_requested = run.args.flag("json")};
+  Result result{.tables = {{"difference"}}};
   result.text = fmt::format("In {}\n{}", kSpace, add_errors(result, "all", "", halves, {}));
   if (!halves[0].leaf.empty()) result.text += '\n' + add_errors(result, "leaf", "leaf_", halves, halves[0].leaf);
-  if (result.is_requested) result.text = to_json({}, result.facts, {});
+  if (run.args.given("json")) result.json = to_json({}, result.facts, {});
   return result;
 }
 

@@ -106,6 +106,10 @@ Result export_scene(const JobRun& run) {
   const std::vector<std::string> files = args.texts("material");
   if (files.size() != 1) fail({}, "{} mitsuba takes one scene file, {} given", args.spelled("format"), files.size());
   if (args.text("output") == "-") fail({}, "{} mitsuba writes a folder, not standard output", args.spelled("format"));
+  const std::vector<double> nm = args.numbers("wavelengths");
+  if (nm.size() == 3 && std::ranges::is_sorted(nm))
+    run.log().warn({}, fmt::format("{} {}: the first is red and the last is blue", args.spelled("wavelengths"),
+                                   fmt::join(nm, ",")));
   Session& session = run.session();
   SceneDescription description = session.read(files.front(), unsupported_of(args));
   apply_swaps(description, swaps_of(args), session.registry(), run.log());

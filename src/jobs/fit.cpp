@@ -149,7 +149,12 @@ leaf::FitRequest request_of(const Arguments& args) {
   request.has_prior = request.like != nullptr;
   request.structure = structure_of(args, request.like);
   if (args.given("sieve")) request.sieve = args.text("sieve") == "on";
-  for (const std::string& word : args.texts("fix")) request.fixed.push_back(fixed_of(word, args.spelled("fix")));
+  for (const std::string& word : args.texts("fix")) {
+    leaf::FitRequest::Fixed fixed = fixed_of(word, args.spelled("fix"));
+    if (std::ranges::find(request.fixed, fixed.name, &leaf::FitRequest::Fixed::name) != request.fixed.end())
+      fail({}, "{}: {} is given twice", args.spelled("fix"), fixed.name);
+    request.fixed.push_back(std::move(fixed));
+  }
   check_contradictions(request, args.spelled("fix"));
   if (request.like) request.absorption_tables = request.like->params.absorption_tables;
   if (args.given("absorption"))

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "image/image_file.h"
@@ -105,7 +106,7 @@ constexpr JobParam kParams[] = {
     JobParam("disable-wavelength-jitter", flag, "Use the same wavelengths for all samples.", {.decides = true}),
     kIgnoreUnsupportedParam,
     kStrictParam,
-    JobParam("json", flag, "Print the statistics as JSON on standard output."),
+    kJsonParam,
 };
 
 /// Counts by path depth, without trailing zeros.
@@ -123,8 +124,8 @@ class SceneRender {
   SceneRender(const JobRun& run, std::vector<std::filesystem::path> files)
       : run_(run), files_(std::move(files)), task_(run), views_(run.args) {}
 
-  /// Appends the render's statistics to the result.
-  void render(Result& result) {
+  /// Appends the render's statistics to the table of the result, and to `json`.
+  void render(Result& result, std::vector<nlohmann::ordered_json>& json) {
     try {
       prepare();
     } catch (const InputError& error) {
@@ -134,7 +135,7 @@ class SceneRender {
       problems.attempt([this] { run_.context.log().check(); });
       problems.check();
     }
-    if (run_.args.flag("pilot")) return report_choice(result);
+    if (run_.args.flag("pilot")) return report_choice(result, json);
     if (names_) kept_.emplace(*names_, run_.control.stop, run_.log());
     RenderPart part = first_part();
     views_.begin(part.film, part.header.image, output_ ? output_->path() : run_.args.text("part"),
@@ -144,7 +145,9 @@ class SceneRender {
     if (kept_)  // a complete image is written even if its checkpoint fails
       kept_->keep(!result.stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
     if (result.stopped && kept_) return kept_->report_stop();
-    if (!result.stopped) finish(part, result);
+    if (result.stopped) return;
+    finish(part, result);
+    json.push_back(json_of(result));
   }
 
  private:
@@ -171,8 +174,8 @@ class SceneRender {
     if (args.given("part")) {
       const std::string part = args.text("part");
       // A part is linear.
-      for (const char* name : {"exposure", "white-balance"})
-        if (args.given(name))
+      for (const char* name : {"exposure", "white-balance", "display", "view"})
+        if (args.given(name) && args.text(name) != "tev")
           fail({}, "{} is for an image: frond merge, which makes one of parts, has it", args.spelled(name));
       names_ = {part, part + ".checkpoint"};  // a part of this name is complete
       return;
@@ -187,15 +190,13 @@ class SceneRender {
   }
 
   /// Adds the selected models to the result, for --pilot.
-  void report_choice(Result& result) const {
+  void report_choice(Result& result, std::vector<nlohmann::ordered_json>& json) const {
     const auto& choice = task_.choice();
     if (!choice)
       fail({}, "{}: the scene leaves no leaf's model open: Material \"leaf\" does, or {} \"*=leaf\"",
            run_.args.spelled("pilot"), run_.args.spelled("swap"));
     result.facts.push_back({"choice", choose::choice_json(*choice)});
-    if (!run_.args.flag("json")) return;
-    result.text += nlohmann::ordered_json::parse(choose::choice_json(*choice)).dump(2) + '\n';
-    result.is_requested = true;
+    json.push_back(nlohmann::ordered_json::parse(choose::choice_json(*choice)));
   }
 
   /// Returns an earlier run's partial result, or an empty part. Throws InputError if that result is of another render.
@@ -288,7 +289,7 @@ class SceneRender {
                                       text(noise.upper_rms()), run_.args.words("max-rms").back()));
   }
 
-  /// Adds the statistics to the table, and logs them unless --json prints them.
+  /// Adds the statistics to the table, and logs them.
   void report(const Film& film, const SampleCount& samples, double error_tail, Result& result) const {
     const RenderStatistics& s = statistics_;
     const std::string output = output_ ? output_->path() : names_->finished.string();
@@ -307,7 +308,6 @@ class SceneRender {
                                       {"foliar_ratio", film.foliar_ratio()},
                                       {"variance_in_worst_thousandth", error_tail}})
       table.add(name, value);
-    if (run_.args.flag("json")) return add_json(result);
     const std::string count = samples.least == samples.most ? fmt::format("{}", samples.most)
                                                             : fmt::format("{} to {}", samples.least, samples.most);
     run_.log().info(
@@ -317,8 +317,8 @@ class SceneRender {
     run_.log().info(fmt::format("foliar ratio (camera samples that hit a leaf): {:.2f} %", 100 * film.foliar_ratio()));
   }
 
-  /// Appends the last row of the table as a JSON object, with path counts by depth.
-  void add_json(Result& result) const {
+  /// Returns the last row of the table as a JSON object, with path counts by depth.
+  nlohmann::ordered_json json_of(const Result& result) const {
     nlohmann::ordered_json json;
     const Table& table = result.tables[0];
     for (const Column& c : table.columns) {
@@ -332,8 +332,7 @@ class SceneRender {
     json["paths_escaped_by_depth"] = counts(statistics_.ends.escaped);
     json["paths_absorbed_by_depth"] = counts(statistics_.ends.absorbed);
     if (task_.choice()) json["choice"] = nlohmann::ordered_json::parse(choose::choice_json(*task_.choice()));
-    result.text += json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
-    result.is_requested = true;
+    return json;
   }
 
   const JobRun& run_;
@@ -349,6 +348,23 @@ class SceneRender {
   RenderStatistics statistics_;
 };
 
+/// Reads several scenes before the first is rendered. Throws InputError if one cannot be read, or if two write the same
+/// file.
+void check_scenes(const JobRun& run, const std::vector<std::vector<std::filesystem::path>>& scenes) {
+  JobContext silent(silent_log(), run.context.options());
+  const JobRun quiet{silent, run.args, run.control};
+  std::map<std::string, std::string> by_output;
+  for (const auto& files : scenes) {
+    if (files.back() == "-") continue;  // standard input can be read once only
+    RenderTask task(quiet);
+    task.read(files);
+    const auto [first, is_new] = by_output.emplace(task.film_file(), files.back().string());
+    if (!is_new)
+      fail({}, "{} and {} are both written to {}: give their Films a \"filename\" each, or render one with {}",
+           first->second, files.back().string(), first->first, run.args.spelled("output"));
+  }
+}
+
 /// The job: renders the scenes one after another.
 Result render(const JobRun& run) {
   const auto scenes = scenes_of(run.args.texts("scene"));
@@ -356,11 +372,15 @@ Result render(const JobRun& run) {
     if (scenes.size() > 1 && run.args.given(name))
       fail({}, "{} scenes cannot all be written to {}: without it each is written to the file of its Film",
            scenes.size(), run.args.text(name));
+  if (scenes.size() > 1 && !run.args.flag("pilot")) check_scenes(run, scenes);
   Result result{.tables = {{"renders"}}};
+  std::vector<nlohmann::ordered_json> json;  // of each scene
   for (const auto& files : scenes) {
-    SceneRender(run, files).render(result);
-    if (result.stopped) break;
+    SceneRender(run, files).render(result, json);
+    if (result.stopped) return result;
   }
+  const nlohmann::ordered_json whole = json.size() == 1 ? json[0] : nlohmann::ordered_json(json);
+  result.json = whole.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
   return result;
 }
 

@@ -30,7 +30,7 @@ constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
 constexpr JobParam kParams[] = {
     JobParam("leaf", texts,
              "MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name "
-             "leaf_simplified.",
+             "leaf_simplified, for FILE.leaf leaf_solved.",
              {.type = "MATERIAL", .decides = true, .positional = true}),
     JobParam("specimen", text, "Specimen of the leaf; soybean by default.",
              {.choices = leaf::kSpecimenNames, .decides = true}),
@@ -91,9 +91,12 @@ void check_is_of_leaf(const std::string& name, const Arguments& args) {
 PluginText leaf_of(const JobRun& run) {
   std::string text = material_text(run.args.texts("leaf"));
   const size_t end = text.find(',');
+  const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
   if (text.empty() || text.substr(0, end).find('=') != std::string::npos)
-    text = std::string(kSimplified) + (text.empty() ? "" : ",") + text;
+    text = std::string(is_leaf_file ? kSolved : kSimplified) + (text.empty() ? "" : ",") + text;
   PluginText leaf = parse_plugin_text(text, {});
+  if (is_leaf_file && leaf.name == kSimplified)
+    fail({}, "{}: a .leaf file is of {}, a table of {} is a .csv file", run.args.text("output"), kSolved, kSimplified);
   if (leaf.name != kSimplified && leaf.name != kSolved)
     fail({}, "\"{}\" is neither a material that looks up a table, {} or {}, nor name=value of a leaf", leaf.name,
          kSimplified, kSolved);

@@ -70,9 +70,13 @@ double BrfMeasurement::relative_error() const {
 BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other)
     : request_(request) {
   prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description);
+  constexpr size_t kMostViews = 65536;  // of a film's columns
+  if (request.views.size() > kMostViews)
+    fail({}, "{} directions of view: {} is the limit", request.views.size(), kMostViews);
   const LoadedScene first = session.load(description, {}, other);
   const Scene& scene = first.scene();
   const Target target = request.target ? *request.target : default_target(scene);
+  check_target(scene, target);
   const std::optional<Vec3> sun = direction_to_sun(scene.lights());
   description.camera = camera_of(request, target, scene, sun);
   description.camera_from_world = {};

@@ -307,6 +307,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
       session.load(std::move(description), {.command = measurement_text(what, request.target, request.period)});
   const Scene& scene = loaded.scene();
   const Target target = request.target ? *request.target : default_target(scene);
+  check_target(scene, target);
   Incoming incoming(loaded);
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
   state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(incoming), materials, bands});

@@ -6,6 +6,7 @@
 
 #include "core/log.h"
 #include "scene/format/plugin_text.h"
+#include "scene/geometry_builder.h"
 #include "scene/scene_options.h"
 
 namespace frond {
@@ -42,7 +43,12 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
                             SceneDescription& description) {
   constexpr double kDeepest = 1 << 20;
   keep_energy(description, registry);
-  if (!wavelengths.empty()) set_wavelengths(description, wavelengths);
+  if (!wavelengths.empty())
+    set_wavelengths(description, wavelengths, {std::make_shared<const std::string>("wavelengths")});
+  if (make_wavelengths(description, registry)->bands().empty())
+    fail(wavelengths_plugin(description, registry).where,
+         "\"{}\" are wavelengths of an image of colours: a measurement needs bands, as in 608,551,455 or 400:700:10",
+         wavelengths_plugin(description, registry).name);
   if (period) set_param(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
   ParsedPlugin& integrator = description.integrator;
   const IntegratorInfo& info = registry.integrators.get(integrator.name, integrator.where);
@@ -72,6 +78,19 @@ Target default_target(const Scene& scene) {
   if (!(target.x0 < target.x1 && target.y0 < target.y1))
     fail({}, "the scene has no horizontal extent: give --target x0,x1,y0,y1,z");
   return target;
+}
+
+void check_target(const Scene& scene, const Target& target) {
+  for (const double z : {target.z, double(scene.geometry().bounds().max.z)}) {
+    check_coordinates({float(target.x0), float(target.y0), float(z)}, "a corner of the target is", {});
+    check_coordinates({float(target.x1), float(target.y1), float(z)}, "a corner of the target is", {});
+  }
+  const Bounds b = scene.geometry().bounds();
+  const bool is_beside = target.x1 <= double(b.min.x) || target.x0 >= double(b.max.x) || target.y1 <= double(b.min.y) ||
+                         target.y0 >= double(b.max.y);
+  if (is_beside && !scene.period())
+    fail({}, "the target lies beside the scene, which reaches from ({:g}, {:g}) to ({:g}, {:g})", b.min.x, b.min.y,
+         b.max.x, b.max.y);
 }
 
 double distance_above(const Scene& scene, const Target& target, double cosine) {

@@ -25,6 +25,8 @@ std::string measurement_text(const std::string& what, const std::optional<Target
 
 /// Returns one period, or the scene's bounds, at the scene's top.
 Target default_target(const Scene& scene);
+/// Throws InputError for a target too far away for Embree, or beside the bounds of a scene that is not periodic.
+void check_target(const Scene& scene, const Target& target);
 
 /// Returns the distance from the target along a direction, whose cosine with +z is given, to a point above the whole
 /// scene. Rays through the target start there.

@@ -88,9 +88,9 @@ void apply_overrides(const SceneOverrides& overrides, SceneSettings& description
                      const Log& log) {
   apply_swaps(description, overrides.swaps, registry, log);
   if (const auto& text = overrides.integrator)
-    override_plugin(*text, registry.integrators.get(text->name, {}), {}, description.integrator);
+    override_plugin(*text, registry.integrators.get(text->name, text->where), text->where, description.integrator);
   if (const auto& text = overrides.filter)
-    override_plugin(*text, registry.filters.get(text->name, {}), {}, description.filter);
+    override_plugin(*text, registry.filters.get(text->name, text->where), text->where, description.filter);
   if (overrides.separate_pixels) {
     ParsedPlugin& filter = description.filter;
     override_plugin({filter.name, {{"reconstruction", "importance"}}}, registry.filters.get(filter.name, filter.where),

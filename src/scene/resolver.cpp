@@ -119,8 +119,10 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     pass_on(it->second.needs_details);
     return it->second.texture;
   }
+  bool has_other_kind = false;
   std::vector<std::string_view> names;
   for (const TextureDescription& t : description_.textures) {
+    if (t.value != value && t.name == name) has_other_kind = true;
     if (t.value != value) continue;
     names.push_back(t.name);
     if (t.name != name) continue;
@@ -141,6 +143,9 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     made.emplace(name, MadeTexture<Texture>{result, needs_details});
     return result;
   }
+  if (has_other_kind)
+    fail(where, "there is no {} \"{}\": \"{}\" is a {}", table.kind(), name, name,
+         value == TextureDescription::Value::real ? "spectrum texture" : "float texture");
   fail_unknown(table.kind(), name, names, where);
 }
 

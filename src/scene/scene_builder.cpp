@@ -76,6 +76,7 @@ class SceneBuilder {
     bind_all(*resolver);
     build_world(description, *resolver);
     problems_.attempt([this] { check_period(); });
+    check_table_files(*resolver);
     problems_.check();
   }
 
@@ -104,6 +105,14 @@ class SceneBuilder {
     }
     problems_.check();
     finish(*resolver, shared);
+  }
+
+  /// Prepares the materials whose tables are files, which takes no time: a file may lack the wavelengths of the render.
+  void check_table_files(SceneResolver& resolver) {
+    const Preparation preparation{*scene_.wavelengths_, pool_, log_, {}};
+    for (const auto& [place, made] : resolver.materials())
+      if (find_param(description_.materials[place].plugin.params, "tablefile"))
+        problems_.attempt([&] { made.material->prepare(preparation); });
   }
 
   /// Builds everything that is located in the scene.

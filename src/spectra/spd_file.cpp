@@ -22,7 +22,7 @@ double parse_number(std::string_view word, const Location& where) {
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size())
-    fail(where, "a spectrum file holds numbers only: this is not one");
+    fail(where, "a spectrum file has two numbers in each line, with a blank between: this is not a number");
   return value;
 }
 

@@ -23,6 +23,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
 class Commands : public ::testing::Test {
@@ -178,7 +179,7 @@ ObjectInstance "leaf"
 
 TEST_F(Commands, RenderWritesWhatItSays) {
   const Outcome o =
-      render({"-o", path("a.exr"), "--spp", "3", "--seed", "9", "--wavelengths", "smpte", "--json", "-q"});
+      render({"-o", path("a.exr"), "--spp", "3", "--seed", "9", "--wavelengths", "smpte", "--json", "-", "-q"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, IsEmpty());
   const auto json = nlohmann::json::parse(o.out);
@@ -310,7 +311,7 @@ TEST_F(Commands, AnInstanceIsNoMirrorImage) {
 }
 
 TEST_F(Commands, QuickIsSmallerAndCoarser) {
-  const Outcome o = render({"-o", path("q.png"), "--quick", "--json", "-q"});
+  const Outcome o = render({"-o", path("q.png"), "--quick", "--json", "-", "-q"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_EQ(read_image(path("q.png"), {}).image.width, 12);
   EXPECT_EQ(nlohmann::json::parse(o.out)["samples_per_pixel"], 1);
@@ -390,7 +391,7 @@ Material "diffuse" "rgb reflectance" [.5 .5 .5]
 Shape "sphere"
 )");
   const auto ends = [&](const char* integrator) {
-    const Outcome o = render({"-o", path("a.exr"), "--spp", "1", "--json", "-q", "--integrator", integrator});
+    const Outcome o = render({"-o", path("a.exr"), "--spp", "1", "--json", "-", "-q", "--integrator", integrator});
     return nlohmann::json::parse(o.out)["paths_absorbed_by_depth"].get<std::vector<int>>();
   };
   EXPECT_EQ(ends("path,termination=attenuation,cutoff=0.1"), (std::vector{0, 0, 16}));
@@ -414,8 +415,8 @@ LightSource "infinite" "spectrum L" [300 1 2500 1]
 Material "diffuse" "spectrum reflectance" [300 .9 850 .9 1000 .03 2500 .03]
 Shape "sphere"
 )");
-  const Outcome o =
-      render({"-o", path("a.exr"), "--spp", "1", "--json", "-q", "--wavelengths", "bands,wavelengths=850,1650,2200"});
+  const Outcome o = render(
+      {"-o", path("a.exr"), "--spp", "1", "--json", "-", "-q", "--wavelengths", "bands,wavelengths=850,1650,2200"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_EQ(nlohmann::json::parse(o.out)["paths_absorbed_by_depth"].get<std::vector<int>>(), (std::vector{0, 16}));
 }
@@ -462,6 +463,49 @@ TEST_F(Commands, NoInputIsReplacedAndNoFileIsWrittenTwice) {
   EXPECT_EQ(text_of(scene), before);
 }
 
+TEST_F(Commands, SeveralScenesAreCheckedBeforeTheFirstIsRendered) {
+  const auto scene = [this](const char* name, const char* film) {
+    return folder_
+        .write(name, fmt::format("Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 \"string "
+                                 "filename\" \"{}\"\nWorldBegin\nLightSource \"infinite\"\n",
+                                 film))
+        .string();
+  };
+  const fs::path before = fs::current_path();
+  fs::current_path(fs::path(path("a")).parent_path());
+  const std::string a = scene("a.pbrt", "one.exr"), b = scene("b.pbrt", "one.exr"), c = scene("c.pbrt", "two.exr");
+  EXPECT_THAT(frond_command({"render", a, b, "--no-cache"}).err, HasSubstr("are both written to one.exr"));
+  EXPECT_THAT(frond_command({"render", a, path("none.pbrt"), "--no-cache"}).err, HasSubstr("there is no file"));
+  EXPECT_FALSE(fs::exists(path("one.exr")));
+  const Outcome both = frond_command({"render", a, c, "--no-cache", "-q", "--json", "-"});
+  fs::current_path(before);
+  ASSERT_EQ(both.code, 0) << both.err;
+  const auto json = nlohmann::json::parse(both.out);
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[1]["output"], "two.exr");
+}
+
+TEST_F(Commands, ContradictionsAreErrors) {
+  const auto refusal = [this](std::vector<std::string> more) {
+    more.insert(more.end(), {"-o", path("x.exr"), "-q"});
+    const Outcome o = render(more);
+    EXPECT_EQ(o.code, 1);
+    return o.err;
+  };
+  EXPECT_THAT(refusal({"--swap", "thing=diffuse", "--swap", "thing=diffuse"}), HasSubstr("replaces \"thing\" twice"));
+  EXPECT_THAT(refusal({"--swap", "thing=leaf_lambert,specimen=maize,specimen=red"}), HasSubstr("is given twice"));
+  EXPECT_THAT(refusal({"--integrator", "path,maxdepth=-1"}), HasSubstr("frond: --integrator: \"maxdepth\" is -1"));
+  EXPECT_THAT(refusal({"--filter", "gauss"}), HasSubstr("frond: --filter: unknown pixel filter"));
+  EXPECT_THAT(refusal({"--wavelengths", "smpte,red=455"}), HasSubstr("three different wavelengths"));
+  EXPECT_FALSE(fs::exists(path("x.exr")));
+}
+
+TEST_F(Commands, HelpIsACommandToo) {
+  EXPECT_EQ(frond_command({"help"}).out, frond_command({"--help"}).out);
+  EXPECT_EQ(frond_command({"help", "flux"}).out, frond_command({"flux", "--help"}).out);
+  EXPECT_THAT(frond_command({"render", "a.pbrt", "--spp"}).err, StartsWith("frond: --spp"));
+}
+
 /// It knows linear sRGB by that name and not how to get there from anywhere else.
 TEST_F(Commands, AnOpenColorIOConfigurationThatLacksTheFilmsSpaceIsRefusedBeforeRendering) {
   folder_.write("small.ocio", R"(ocio_profile_version: 2
@@ -500,9 +544,9 @@ TEST_F(Commands, DifferenceTellsNoiseFromBias) {
               0);
   }
   const auto difference = [&](const char* a, const char* b) {
-    const Outcome o =
-        frond_command({"difference", path(a + std::string("1.exr")), path(a + std::string("2.exr")),
-                       path(b + std::string("1.exr")), path(b + std::string("2.exr")), "--json", "-o", path("d.png")});
+    const Outcome o = frond_command({"difference", path(a + std::string("1.exr")), path(a + std::string("2.exr")),
+                                     path(b + std::string("1.exr")), path(b + std::string("2.exr")), "--json", "-",
+                                     "-o", path("d.png")});
     EXPECT_EQ(o.code, 0) << o.err;
     return nlohmann::json::parse(o.out);
   };
@@ -616,7 +660,7 @@ TEST_F(Commands, NumbersThatAreNoneAreToldInFewWords) {
 }
 
 TEST_F(Commands, SamplesAreCountedAsRaysAre) {
-  const Outcome o = render({"-o", path("a.exr"), "--spp", "1e1", "--json", "-q"});
+  const Outcome o = render({"-o", path("a.exr"), "--spp", "1e1", "--json", "-", "-q"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_EQ(nlohmann::json::parse(o.out)["samples_per_pixel"], 10);
 }

@@ -61,6 +61,26 @@ TEST_F(RadiometryJobs, HelpSaysWhetherAnErrorIsAbsoluteOrRelative) {
   EXPECT_THAT(frond_command({"brf", "--help"}).out, HasSubstr("Relative standard error"));
 }
 
+TEST_F(RadiometryJobs, WavelengthsOfAnImageAreNoBands) {
+  for (const char* job : {"brf", "flux"})
+    for (const char* wavelengths : {"smpte", "hero", "meyer"}) {
+      const Outcome o = measured(kSun, {job, "--wavelengths", wavelengths});
+      EXPECT_EQ(o.code, 1);
+      EXPECT_THAT(o.err, HasSubstr("a measurement needs bands, as in 608,551,455")) << job << " " << wavelengths;
+    }
+}
+
+TEST_F(RadiometryJobs, TheTargetLiesInTheScene) {
+  options_ = "";
+  for (const char* job : {"brf", "flux"}) {
+    EXPECT_THAT(measured(kSun, {job, "--target", "0,1e20,0,1e20,1"}).err, HasSubstr("5e+17 units from the origin"));
+    EXPECT_THAT(measured(kSun, {job, "--target", "2,3,0,1,0"}).err,
+                HasSubstr("the target lies beside the scene, which reaches from (0, 0) to (1, 1)"));
+    EXPECT_EQ(measured(kSun, {job, "--target", "0,3,0,1,0"}).code, 0);
+  }
+  EXPECT_THAT(measured(kSun, {"brf", "--zenith", "-80:80:0.001"}).err, HasSubstr("65536 is the limit"));
+}
+
 TEST_F(RadiometryJobs, PhotonsAreCountedInPhysicalUnitsAlone) {
   const std::string par = "400:700:50", sky = "LightSource \"sky\"\n";
   const auto error = [&](const std::string& lights, const std::string& irradiance, const std::string& nm) {

@@ -101,8 +101,27 @@ TEST(TableCommand, WritesALeafFileOverDepths) {
   EXPECT_EQ(whole(20), 32u);  // depths: ln(10 / 0.1) in steps of at most 0.15, both ends
   EXPECT_THAT(written("10,0.1").err, HasSubstr("invalid range of depths, 10 to 0.1"));
   EXPECT_THAT(written("-1,10").err, HasSubstr("--depths: 2 numbers from 0 on"));
-  EXPECT_THAT(table_command({"--wavelengths", "551", "--depths", "1,2", "-o", path}).err,
+  EXPECT_THAT(table_command({"--wavelengths", "551", "--depths", "1,2", "-o", path + ".csv"}).err,
               HasSubstr("--depths is for a .leaf file of leaf_solved"));
+  EXPECT_THAT(table_command({"leaf_simplified", "--wavelengths", "551", "-o", path}).err,
+              HasSubstr("a .leaf file is of leaf_solved"));
+  EXPECT_EQ(table_command({"--wavelengths", "551", "-o", path}).code, 0);
+}
+
+TEST(TableCommand, CheckReportsATableThatLacksTheWavelengths) {
+  const TestFolder folder("leaf");
+  const std::string table = folder.name_of("a.csv");
+  ASSERT_EQ(table_command({"--wavelengths", "400:700:100", "--angles", "0,180", "-o", table}).code, 0);
+  const std::string scene =
+      folder
+          .write("scene.pbrt",
+                 "WorldBegin\nLightSource \"infinite\"\nMaterial \"leaf_simplified\" \"string tablefile\" "
+                 "\"a.csv\" \"float chlorophylla\" 9\nShape \"disk\"\n")
+          .string();
+  const Outcome o = frond_command({"check", scene});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, HasSubstr("a.csv\" is known from 400 to 700 nm, the render needs 360 to 830 nm"));
+  EXPECT_THAT(o.err, HasSubstr("\"chlorophylla\" has no effect with \"tablefile\""));
 }
 
 TEST(TableCommand, RefusesOptionsThatModesDoNotHave) {

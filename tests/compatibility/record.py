@@ -49,8 +49,8 @@ conform diffuse --samples 1e3 --csv laws.csv --json -
 fit measured.csv --csv fit.csv --json -
 brf scene.pbrt --wavelengths 551 --paths 32 --csv brf.csv --json -
 flux scene.pbrt --wavelengths 551 --paths 1e3 --csv flux.csv --json -
-render scene.pbrt --spp 1 -o a.exr --json
-difference a.exr a.exr a.exr a.exr --json"""
+render scene.pbrt --spp 1 -o a.exr --json -
+difference a.exr a.exr a.exr a.exr --json -"""
 
 
 def outputs(program, commands, folder):

@@ -112,7 +112,7 @@ FIT = ("fit", "spectra.csv", "--threads", "2", "--structure", "bifacial", "--sie
 
 JOBS = [
     Job(RENDER, SCENE_FILES, ("a.exr",)),
-    Job((*RENDER, "--json"), SCENE_FILES, ("a.exr",), text=lambda text: sorted(json.loads(text))),
+    Job((*RENDER, "--json", "-"), SCENE_FILES, ("a.exr",), text=lambda text: sorted(json.loads(text))),
     Job(RENDER, SCENE_FILES, ("a.exr",), resume=CHECKPOINTS, keeps=("a.exr.part",)),
     Job((*RENDER[:-2], "--samples", "0:32", "--part", "c.part"), SCENE_FILES, ("c.part",), table=without_statistics,
         resume=("--resume",), replaces=False),

@@ -146,7 +146,7 @@ TEST(ParserErrors, TellWhichParameterIsNotWellFormed) {
       {"Shape \"disk\" \"float a\" ]", "s:2:24: \"a\" is float: a number is needed, ] was given"},
       {"Shape \"disk\" \"integer a\" [ 1 2.5 ]", "s:2:30: \"a\" is integer: an integer is needed, 2.5 was given"},
       {"Shape \"disk\" \"integer a\" 3000000000",
-       "s:2:26: \"a\" is integer: an integer is needed, 3000000000 was given"},
+       "s:2:26: \"a\" is 3000000000, outside the range of integers, -2147483648 to 2147483647"},
       {"Shape \"disk\" \"bool a\" 1", "s:2:23: \"a\" is bool: true or false is needed, 1 was given"},
       {"Shape \"disk\" \"bool a\" \"yes\"", "s:2:23: \"a\" is bool: true or false is needed, \"yes\" was given"},
       {"Shape \"disk\" \"string a\" b", "s:2:25: \"a\" is string: a quoted string is needed, b was given"},

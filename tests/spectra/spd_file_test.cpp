@@ -40,8 +40,10 @@ TEST_F(SpdFile, ReadsPairsBetweenAnyWhiteSpaceAndComments) {
 }
 
 TEST_F(SpdFile, ErrorsNameLineAndColumn) {
-  EXPECT_EQ(error("400 1\n500  x2\n"), ":2:6: a spectrum file holds numbers only: this is not one");
-  EXPECT_EQ(error("400 1\n500 2e\n"), ":2:5: a spectrum file holds numbers only: this is not one");
+  EXPECT_EQ(error("400 1\n500  x2\n"),
+            ":2:6: a spectrum file has two numbers in each line, with a blank between: this is not a number");
+  EXPECT_EQ(error("400 1\n500 2e\n"),
+            ":2:5: a spectrum file has two numbers in each line, with a blank between: this is not a number");
   EXPECT_EQ(error("400 1\n500 2\n600"), ":3:1: wavelength 600 nm has no value: the file ends after it");
   EXPECT_EQ(error("400 1\n  300 2\n"), ":2:3: wavelengths must ascend, 300 nm follows 400 nm");
   EXPECT_EQ(error("400 1\n500 nan\n"), ":2:1: the value at 500 nm is nan, finite numbers are needed");

@@ -45,7 +45,7 @@ class Choosing : public ::testing::Test {
 };
 
 const std::string kSmpte = "Option \"string wavelengths\" \"smpte\"\n";
-const std::vector<std::string> kPilot{"--wavelengths", "smpte", "--pilot", "--json"};
+const std::vector<std::string> kPilot{"--wavelengths", "smpte", "--pilot", "--json", "-"};
 /// A long render, for which a pilot pays, that its noise target ends early.
 const std::vector<std::string> kLong{"--wavelengths", "smpte", "--spp", "1e5", "--max-rms", "0.3"};
 
@@ -98,7 +98,7 @@ TEST_F(Choosing, WhatCannotBeMetByLessIsSolved) {
 }
 
 TEST_F(Choosing, NoPilotIsMadeThatCannotPay) {
-  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--spp", "4", "--json"});
+  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--spp", "4", "--json", "-"});
   const auto choice = nlohmann::json::parse(o.out)["choice"];
   EXPECT_EQ(choice["ground"], "no gain");
   EXPECT_EQ(choice["pilot"]["paths"], 0);
@@ -109,7 +109,7 @@ TEST_F(Choosing, NoPilotIsMadeThatCannotPay) {
 
 TEST_F(Choosing, WhoNamesAModelHasIt) {
   const Outcome o = render(two_leaves("\"string model\" \"leaf_lambert\"", "\"string model\" \"leaf_lambert\""),
-                           {"--wavelengths", "smpte", "--spp", "4", "--json"});
+                           {"--wavelengths", "smpte", "--spp", "4", "--json", "-"});
   EXPECT_FALSE(nlohmann::json::parse(o.out).contains("choice"));
   EXPECT_THAT(header(), Not(Contains(Key("frond:choice"))));
 }
@@ -137,7 +137,7 @@ TEST_F(Choosing, TexturesOfCellWallsLeaveTheWalkAlone) {
 }
 
 TEST_F(Choosing, APilotAloneRendersNothing) {
-  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--pilot", "--json"});
+  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--pilot", "--json", "-"});
   EXPECT_EQ(nlohmann::json::parse(o.out)["leaves"][1]["chosen"], "leaf_lambert");
   EXPECT_FALSE(std::filesystem::exists(image()));
   const std::string fixed = "\"string model\" \"abm\"";

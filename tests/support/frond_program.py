@@ -93,7 +93,7 @@ class FrondTest(unittest.TestCase):
     def samples_in(self, seconds):
         """How many samples per pixel a run of so many seconds gets to here and now, load and all."""
         image = self.folder / "calibration.exr"
-        out, _ = self.run_for(seconds, image, "--spp", 1 << 24, "--json", "-q")
+        out, _ = self.run_for(seconds, image, "--spp", 1 << 24, "--json", "-", "-q")
         image.unlink()
         return max(64, json.loads(out)["samples_per_pixel"])
 

@@ -142,6 +142,11 @@ std::string documented(const JobParam& p) {
   return text + relations(p);
 }
 
+std::string Arguments::spelled(std::string_view name) const {
+  const JobParam* p = find_param(name);
+  return p && p->positional ? std::string(name) : spelling_(name);
+}
+
 const JobParam* Arguments::find_param(std::string_view name) const {
   const auto found = std::ranges::find(declared_, name, &JobParam::name);
   return found == declared_.end() ? nullptr : *found;
@@ -175,7 +180,7 @@ std::optional<std::vector<double>> numbers_of(const JobParam& p, const std::stri
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
   const auto refuse = [&](const std::string& word) {
-    fail({}, "{}: {} {} needed; \"{}\" was given{}", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
+    fail({}, "{}: {} {} needed; \"{}\" was given{}", spelled(p.name), needed(p),
          p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word,
          p.kind == ArgumentKind::numbers ? hint_of(word, p.unit) : "");
   };
@@ -183,12 +188,11 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
   const size_t takes = p.kind == ArgumentKind::texts ? p.values : repeats ? 0 : 1;
   if (takes > 0 && words.size() != takes)
-    fail({}, "{} takes {} value{}, {} {} given: {}", p.positional ? std::string(p.name) : spelling_(p.name), takes,
-         takes == 1 ? "" : "s", words.size(), words.size() == 1 ? "was" : "were", p.doc);
+    fail({}, "{} takes {} value{}, {} {} given: {}", spelled(p.name), takes, takes == 1 ? "" : "s", words.size(),
+         words.size() == 1 ? "was" : "were", p.doc);
   if (words.empty()) refuse("");
   for (std::string& word : value.words) {
-    if (word.find('\0') != std::string::npos)
-      fail({}, "{}: a text without zero bytes is needed", p.positional ? std::string(p.name) : spelling_(p.name));
+    if (word.find('\0') != std::string::npos) fail({}, "{}: a text without zero bytes is needed", spelled(p.name));
     if (word == "true" && !p.implied.empty()) word = p.implied;
     if (!allows(p, word)) refuse(word);
     if (p.kind == ArgumentKind::seed) {
@@ -218,12 +222,11 @@ void Arguments::set(std::string_view name, const std::vector<std::string>& words
 /// Relations are checked after all parameters are set, because their order is arbitrary.
 void Arguments::check() const {
   for (const JobParam* p : params()) {
-    if (p->required && !given(p->name))
-      fail({}, "{} is needed: {}", p->positional ? std::string(p->name) : spelling_(p->name), p->doc);
+    if (p->required && !given(p->name)) fail({}, "{} is needed: {}", spelled(p->name), p->doc);
     if (!given(p->name) || (p->kind == ArgumentKind::flag && !flag(p->name))) continue;
-    if (!p->needs.empty() && !given(p->needs)) fail({}, "{} needs {}", spelling_(p->name), spelling_(p->needs));
+    if (!p->needs.empty() && !given(p->needs)) fail({}, "{} needs {}", spelled(p->name), spelled(p->needs));
     for (const std::string& other : split(std::string(p->excludes), ','))
-      if (!other.empty() && given(other)) fail({}, "{} excludes {}", spelling_(p->name), spelling_(other));
+      if (!other.empty() && given(other)) fail({}, "{} excludes {}", spelled(p->name), spelled(other));
   }
 }
 

@@ -27,8 +27,7 @@ enum class ArgumentKind : uint8_t {
 /// Use of a parameter's value as a path. `submit` makes paths absolute; outputs are checked before the job runs.
 enum class PathUse : uint8_t {
   none,
-  read,     ///< no output may replace the file
-  replace,  ///< read, and an output may replace the file: it is written once all has been read
+  read,  ///< no output may replace the file
   write,
 };
 
@@ -112,7 +111,7 @@ class Arguments {
   std::string text(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
-  std::string spelled(std::string_view name) const { return spelling_(name); }
+  std::string spelled(std::string_view name) const;
   Spelling spelling() const { return spelling_; }
   const std::vector<const JobParam*>& params() const { return declared_; }
   /// Returns the words as given. The parameter must be given.

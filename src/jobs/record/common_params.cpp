@@ -18,6 +18,11 @@ MaterialSwap parse_swap(const std::string& text, const Arguments& args) {
   return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), where), where};
 }
 
+/// Returns the plug-in of an option. Errors name the option.
+PluginText plugin_of(const Arguments& args, std::string_view name) {
+  return parse_plugin_text(args.text(name), {std::make_shared<const std::string>(args.spelled(name))});
+}
+
 bool has(const Arguments& args, std::string_view name) { return args.declares(name) && args.given(name); }
 
 }  // namespace
@@ -31,7 +36,12 @@ std::vector<std::string> materials_of(const JobRun& run) {
 
 std::vector<MaterialSwap> swaps_of(const Arguments& args) {
   std::vector<MaterialSwap> swaps;
-  for (const std::string& text : args.texts("swap")) swaps.push_back(parse_swap(text, args));
+  for (const std::string& text : args.texts("swap")) {
+    MaterialSwap swap = parse_swap(text, args);
+    if (std::ranges::find(swaps, swap.from, &MaterialSwap::from) != swaps.end())
+      fail({}, "{} replaces \"{}\" twice", args.spelled("swap"), swap.from);
+    swaps.push_back(std::move(swap));
+  }
   return swaps;
 }
 
@@ -40,8 +50,8 @@ SceneOverrides overrides_of(const Arguments& args) {
   SceneOverrides overrides;
   if (has(args, "swap")) overrides.swaps = swaps_of(args);
   if (args.declares("wavelengths")) overrides.wavelengths = wavelengths_text(args);
-  if (has(args, "integrator")) overrides.integrator = parse_plugin_text(args.text("integrator"), {});
-  if (has(args, "filter")) overrides.filter = parse_plugin_text(args.text("filter"), {});
+  if (has(args, "integrator")) overrides.integrator = plugin_of(args, "integrator");
+  if (has(args, "filter")) overrides.filter = plugin_of(args, "filter");
   overrides.separate_pixels = args.declares("for-denoiser") && args.flag("for-denoiser");
   if (overrides.separate_pixels && overrides.filter)
     for (const auto& [name, value] : overrides.filter->params)

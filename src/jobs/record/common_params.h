@@ -13,7 +13,7 @@ inline constexpr JobParam kSceneParam(
 /// Returns a positional parameter for images or parts to read: `count` files, or any number if 0.
 constexpr JobParam files_param(std::string_view name, std::string_view doc, size_t count = 0) {
   return JobParam(name, ArgumentKind::texts, doc,
-                  {.type = "FILE", .values = count, .path = PathUse::replace, .positional = true, .required = true});
+                  {.type = "FILE", .values = count, .path = PathUse::read, .positional = true, .required = true});
 }
 /// Returns -o, --output: a file to write.
 constexpr JobParam output_param(std::string_view doc, bool required, std::string_view excludes = "") {

@@ -199,6 +199,9 @@ std::vector<double> ParameterReader::read_numbers(Tokenizer& tokens, const Token
   numbers_.clear();
   for_each_value(tokens, first, [&](const Token& value) {
     const auto number = number_of(tokens, value);
+    if (number && are_integers && !is_int(*number) && *number == std::floor(*number))
+      fail(tokens.where(value), "\"{}\" is {}, outside the range of integers, {} to {}", p.name, value.shown(),
+           std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
     if (!number || (are_integers && !is_int(*number)))
       fail_value(tokens.where(value), p, numbers_.empty() || are_integers ? kind : Values::numbers, value);
     numbers_.push_back(*number);

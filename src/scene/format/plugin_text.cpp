@@ -78,7 +78,7 @@ ParsedParam typed(const Param& declared, const std::string& text, const Location
 /// A word without "=" continues the previous parameter's list.
 PluginText parse_plugin_text(const std::string& text, const Location& where) {
   const auto parts = split(text, ',');
-  PluginText result{parts[0], {}};
+  PluginText result{parts[0], {}, where};
   if (result.name.empty()) fail(where, "a plug-in with parameters is written NAME,parameter=value: {}", text);
   for (size_t i = 1; i < parts.size(); ++i) {
     const size_t equals = parts[i].find('=');
@@ -88,7 +88,10 @@ PluginText parse_plugin_text(const std::string& text, const Location& where) {
     }
     if (equals == std::string::npos || equals == 0 || equals + 1 == parts[i].size())
       fail(where, "a parameter looks like name=value: \"{}\" in {}", parts[i], text);
-    result.params.emplace_back(parts[i].substr(0, equals), parts[i].substr(equals + 1));
+    std::string param = parts[i].substr(0, equals);
+    if (std::ranges::find(result.params, param, &std::pair<std::string, std::string>::first) != result.params.end())
+      fail(where, "\"{}\" is given twice in {}", param, text);
+    result.params.emplace_back(std::move(param), parts[i].substr(equals + 1));
   }
   return result;
 }

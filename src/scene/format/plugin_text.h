@@ -13,6 +13,7 @@ namespace frond {
 struct PluginText {
   std::string name;
   std::vector<std::pair<std::string, std::string>> params;
+  Location where = {};  ///< of the text, for errors
 };
 
 /// Throws InputError at `where` for text of another form.

@@ -28,6 +28,9 @@ class Smpte final : public WavelengthStrategy {
   explicit Smpte(const Params& p)
       : nm_{static_cast<float>(p.real("red")), static_cast<float>(p.real("green")),
             static_cast<float>(p.real("blue"))} {
+    if (nm_[0] == nm_[1] || nm_[1] == nm_[2] || nm_[2] == nm_[0])
+      fail(p.where(), "red, green and blue are three different wavelengths: {:g}, {:g} and {:g} nm were given", nm_[0],
+           nm_[1], nm_[2]);
     for (size_t i = 0; i < 3; ++i) per_radiance_[i] = 1 / double(unit_d65()->at(nm_[i]));
   }
   SampledWavelengths sample(float) const override {
