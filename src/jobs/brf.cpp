@@ -36,7 +36,10 @@ constexpr JobParam kParams[] = {
              {.decides = true, .excludes = "zenith,azimuth"}),
     kTargetParam,
     kPeriodParam,
-    JobParam("paths", count, "Number of paths for each view.", {.default_value = "65536", .range = {1, 4294967296}}),
+    JobParam(
+        "paths", count,
+        "Number of paths for each view, rounded up to a multiple of 32; at least 32 for each wavelength are traced.",
+        {.default_value = "65536", .range = {1, 4294967296}}),
     rms_param(
         "Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below "
         "this; --paths is then not used."),

@@ -79,19 +79,19 @@ constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
 constexpr float to_unit(uint32_t v) { return static_cast<float>(v >> 8) * 0x1p-24f; }
 
 /// Numbers of one dimension, or a pair of dimensions, of a pixel's samples: sample i is the point
-/// place(i) (factor_x, factor_y) + shift, modulo 1 in units of 2^-32.
+/// radical_inverse(i) (generator_x, generator_y) + shift, modulo 1 in units of 2^-32.
 struct Lattice {
-  uint32_t order;  ///< seed of the shuffle; 0: none
-  uint32_t factor_x, factor_y, shift_x, shift_y;
+  uint32_t shuffle_seed;  ///< 0: the samples are not shuffled
+  uint32_t generator_x, generator_y, shift_x, shift_y;
 
-  /// Radical inverse of the sample's place in the sequence.
+  /// Radical inverse in base 2 of the sample's index, after the shuffle.
   template <bool kShuffles>
-  uint32_t place(uint32_t index) const {
+  uint32_t radical_inverse(uint32_t index) const {
     const uint32_t inverse = reverse_bits(index);
-    return kShuffles ? owen_hash(inverse, order) : inverse;
+    return kShuffles ? owen_hash(inverse, shuffle_seed) : inverse;
   }
-  float x(uint32_t place) const { return to_unit(place * factor_x + shift_x); }
-  float y(uint32_t place) const { return to_unit(place * factor_y + shift_y); }
+  float x(uint32_t inverse) const { return to_unit(inverse * generator_x + shift_x); }
+  float y(uint32_t inverse) const { return to_unit(inverse * generator_y + shift_y); }
 };
 
 /// Number of samples generated at once: the compiler vectorizes loops of this length.
@@ -100,22 +100,22 @@ constexpr uint32_t kBlock = 16;
 /// Generates kCount samples of one dimension.
 template <uint32_t kCount, bool kShuffles>
 [[gnu::always_inline]] inline void make(const Lattice& lattice, uint32_t index, float* u) {
-  for (uint32_t i = 0; i < kCount; ++i) u[i] = lattice.x(lattice.place<kShuffles>(index + i));
+  for (uint32_t i = 0; i < kCount; ++i) u[i] = lattice.x(lattice.radical_inverse<kShuffles>(index + i));
 }
 /// Generates kCount samples of a pair of dimensions. x and y are separate arrays for vectorization.
 template <uint32_t kCount, bool kShuffles>
 [[gnu::always_inline]] inline void make(const Lattice& lattice, uint32_t index, Vec2* u) {
   std::array<float, kCount> x, y;
   for (uint32_t i = 0; i < kCount; ++i) {
-    const uint32_t place = lattice.place<kShuffles>(index + i);
-    x[i] = lattice.x(place);
-    y[i] = lattice.y(place);
+    const uint32_t inverse = lattice.radical_inverse<kShuffles>(index + i);
+    x[i] = lattice.x(inverse);
+    y[i] = lattice.y(inverse);
   }
   for (uint32_t i = 0; i < kCount; ++i) u[i] = {x[i], y[i]};
 }
 template <uint32_t kCount, class T>
 [[gnu::always_inline]] inline void make(const Lattice& lattice, uint32_t index, T* u) {
-  if (lattice.order == 0)
+  if (lattice.shuffle_seed == 0)
     make<kCount, false>(lattice, index, u);
   else
     make<kCount, true>(lattice, index, u);
@@ -169,7 +169,8 @@ class LatticeSampler final : public SamplerBase {
   }
 
   Lattice lattice(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
-    // From a search: 2^n points of the pair (1, kSecond) have a small variance for random edges in a pixel, for all n.
+    // From a search: 2^n points of the generating vector (1, kSecond) have a small variance for random edges in a
+    // pixel, for all n.
     constexpr uint32_t kSecond = 0x4da614d3;
     // A factor of all joint dimensions: 2^n samples remain the same points, in another order. With bands, a wavelength
     // has every 2^k-th sample (sample_in_turn), whose radical inverses lie in one interval of length 2^-k; this factor
@@ -180,9 +181,9 @@ class LatticeSampler final : public SamplerBase {
     const uint32_t joint = factor(dimension);
     Lattice numbers{joint != 0 ? 0 : uint32_t(key >> 32) | 1u, joint != 0 ? joint * kReorder : 1, 0, uint32_t(shifts),
                     uint32_t(shifts >> 32)};
-    numbers.factor_y = numbers.factor_x * kSecond;
-    if (key & 1) std::swap(numbers.factor_x, numbers.factor_y);
-    if (key & 2) numbers.factor_y = -numbers.factor_y;
+    numbers.generator_y = numbers.generator_x * kSecond;
+    if (key & 1) std::swap(numbers.generator_x, numbers.generator_y);
+    if (key & 2) numbers.generator_y = -numbers.generator_y;
     return numbers;
   }
 
