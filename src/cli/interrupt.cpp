@@ -1,5 +1,7 @@
 #include "cli/interrupt.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -11,6 +13,13 @@ std::atomic<int> caught = 0;  // a signal handler may only set a lock-free atomi
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void remember(int signal) { caught = signal; }
+
+/// Ends the program: the handler is reset on entry, and the second signal is delivered when it returns.
+void advise_checkpoint(int signal) {
+  constexpr char kText[] = "\nfrond: stopped; the result so far is lost: --checkpoint SECONDS keeps it\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText, sizeof kText - 1);
+  std::raise(signal);
+}
 
 /// Installs a handler. SA_RESTART continues interrupted system calls, so that writes are not cut off.
 void set_handler(int signal, void (*handler)(int)) {
@@ -42,5 +51,10 @@ Interrupt::~Interrupt() {
 }
 
 int Interrupt::signal() const { return caught; }
+
+void advise_checkpoint_on_interrupt() {
+  struct sigaction now {};
+  if (sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) set_handler(SIGINT, advise_checkpoint);
+}
 
 }  // namespace frond

@@ -24,4 +24,7 @@ class Interrupt {
   std::jthread watcher_;
 };
 
+/// SIGINT ends the program, as by default, with a line about --checkpoint. A SIGINT that is ignored remains so.
+void advise_checkpoint_on_interrupt();
+
 }  // namespace frond

@@ -56,7 +56,10 @@ int execute(const ParsedCommand& command) {
   JobContext context(console, session_options(args));
   ProgressLine progress(quiet);
   std::optional<Interrupt> interrupt;
-  if (asks_for_parts(args)) interrupt.emplace();
+  if (asks_for_parts(args))
+    interrupt.emplace();
+  else if (args.declares("checkpoint"))
+    advise_checkpoint_on_interrupt();
   RenderControl control{.progress = &progress};
   if (interrupt) control.stop = interrupt->token();
   const Result result = guarded(console, context.options().plugins, [&] {

@@ -144,6 +144,15 @@ class Kill(FrondTest):
         self.assertIn(process.returncode, (-signal.SIGINT, 130))  # 130: it was done with the first one by then
         self.check_resumed(spp)
 
+    def test_an_interrupt_without_a_checkpoint_says_what_is_lost(self):
+        process = self.start(self.command(self.output, "--spp", 1 << 24))
+        self.wait_for(lambda: self.catches(process, signal.SIGINT), "a handler")
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate()
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertIn("frond: stopped; the result so far is lost: --checkpoint SECONDS keeps it", err)
+        self.assertFalse(self.output.exists())
+
     @staticmethod
     def cpu_seconds(process):
         """Of a process that has been killed."""
