@@ -71,14 +71,13 @@ class PathIntegrator final : public Integrator {
 
   /// Selects the numbers of scattered rays and of light samples at the first vertex.
   std::string adapt(const World& world, const PilotRays& rays) override {
-    std::vector<std::string> selected;
     try {
-      adapt_scattered_rays(world, rays, selected);
-      adapt_light_samples(world, rays, selected);
+      adapt_scattered_rays(world, rays);
+      adapt_light_samples(world, rays);
     } catch (const SurfaceError&) {
       // The render throws it again, and its caller names the material.
     }
-    return selected.empty() ? "" : fmt::format("path: at first hits {}", fmt::join(selected, ", "));
+    return summary();
   }
 
   std::unique_ptr<Tracer> tracer(const World& world) const override {
@@ -86,25 +85,30 @@ class PathIntegrator final : public Integrator {
   }
 
  private:
-  void adapt_scattered_rays(const World& world, const PilotRays& rays, std::vector<std::string>& selected) {
+  void adapt_scattered_rays(const World& world, const PilotRays& rays) {
     if (settings_.scattered_rays != 0) return;
-    if (selector_.empty() && two_rays_pay(world, selector_, settings_, rays)) {
+    if (selector_.empty() && two_rays_pay(world, selector_, settings_, rays))
       settings_.scattered_rays = 2;
-      selected.push_back("two scattered rays");
-      return;
-    }
-    settings_.bright = bright_materials(world, rays);
-    if (const auto bright = std::ranges::count(settings_.bright, true); bright > 0)
-      selected.push_back(fmt::format("two scattered rays on {} bright material{}", bright, bright == 1 ? "" : "s"));
+    else
+      settings_.bright = bright_materials(world, rays);
   }
 
-  void adapt_light_samples(const World& world, const PilotRays& rays, std::vector<std::string>& selected) {
+  void adapt_light_samples(const World& world, const PilotRays& rays) {
     if (settings_.light_samples != 0) return;
     settings_.light_samples = 1;
     if (!settings_.sample_lights || !selector_.has_extent()) return;
-    if (!two_light_samples_pay(world, selector_, settings_, rays)) return;
-    settings_.light_samples = 2;
-    selected.push_back("two light samples");
+    if (two_light_samples_pay(world, selector_, settings_, rays)) settings_.light_samples = 2;
+  }
+
+  /// What first hits take two of; empty if nothing.
+  std::string summary() const {
+    std::vector<std::string> two;
+    const auto bright = std::ranges::count(settings_.bright, true);
+    if (settings_.scattered_rays == 2) two.emplace_back("two scattered rays");
+    if (bright > 0)
+      two.push_back(fmt::format("two scattered rays on {} bright material{}", bright, bright == 1 ? "" : "s"));
+    if (settings_.light_samples == 2 && selector_.has_extent()) two.emplace_back("two light samples");
+    return two.empty() ? "" : fmt::format("path: at first hits {}", fmt::join(two, ", "));
   }
 
   PathSettings settings_;

@@ -87,7 +87,7 @@ Result canopy(const JobRun& run) {
   if (leaves > kMost) fail({}, "the number of leaves is {}: {} is the limit", leaves, kMost);
   std::vector<std::string> names;
   for (const HomogeneousCanopy::Column& column : canopy.columns) names.push_back(column.name);
-  const std::string output = run.args.text("output");
+  const std::string output = binary_file_of(run.args, "output");
   InstanceWriter writer(output, leaves, names);
   LeafPlacer placer(canopy);
   std::vector<float> values(names.size());

@@ -206,7 +206,7 @@ Result instances(const JobRun& run) {
   for (const size_t column : placement.columns()) names.push_back(table.names()[column]);
   const size_t rows = table.count();
   if (rows == 0) fail({table.file(), 1, 1}, "the file has no rows, only the names of columns");
-  InstanceWriter writer(run.args.text("output"), rows, names);
+  InstanceWriter writer(binary_file_of(run.args, "output"), rows, names);
   std::vector<double> values;
   std::vector<float> numbers(names.size());
   while (table.next(values)) {

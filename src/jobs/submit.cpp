@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "image/image_file.h"
 #include "jobs/submit/engine.h"
 #include "jobs/support/render_task.h"
-#include "render/image_output.h"
 #include "report/text_output.h"
 #include "system/atomic_file.h"
 #include "system/child_process.h"
@@ -66,8 +66,6 @@ std::vector<const JobParam*> handed_on(const JobRun& run) {
   for (const JobParam* p : params_of(kRenderJob)) {
     const bool is_set = std::ranges::find(kParams, p->name, &JobParam::name) != std::end(kParams);
     const bool by_task = std::ranges::count(kSetByTasks, p->name) > 0;
-    if (p->name == "max-rms" && run.args.given(p->name))
-      fail({}, "{} needs all samples in one place: the tasks of a job have fixed ranges", run.args.spelled(p->name));
     if (by_task && run.args.given(p->name)) fail({}, "{} is set by each task", run.args.spelled(p->name));
     if (!is_set && !by_task) params.push_back(p);
   }
@@ -121,16 +119,12 @@ const Engine& chosen_engine(const Arguments& args) {
 /// take a part of it for something else.
 fs::path image_path(const Arguments& args, const Engine& engine) {
   const fs::path path = fs::absolute(args.text("output"));
-  if (args.text("scene") == "-") fail({}, "each task reads the scene: name a file instead of standard input");
-  std::error_code error;
-  if (fs::equivalent(path, args.text("scene"), error))
-    fail({}, "{} would replace the scene, \"{}\"", args.spelled("output"), args.text("scene"));
-  const ImageOutput format_is_known(path.string(), {});
   if (!path.has_filename())
     fail({}, "{} is not the name of an image: \"{}\"", args.spelled("output"), args.text("output"));
   if (path.string().find_first_of(engine.reserved) != std::string::npos)
     fail({}, "{}: {} cannot have any of {} in the path of an image: \"{}\"", args.spelled("output"), engine.name,
          engine.reserved, path.string());
+  check_writable(path.string());
   return path;
 }
 
@@ -204,6 +198,9 @@ Result submit(const JobRun& run) {
   const Arguments& args = run.args;
   const Engine& engine = chosen_engine(args);
   const int64_t tasks = args.count("tasks"), samples = args.count("spp");
+  if (args.text("scene") == "-") fail({}, "each task reads the scene: name a file instead of standard input");
+  if (args.given("max-rms"))
+    fail({}, "{} needs all samples in one place: the tasks of a job have fixed ranges", args.spelled("max-rms"));
   if (tasks > samples) fail({}, "{} tasks cannot share {} samples: each needs at least one", tasks, samples);
   const fs::path output = image_path(args, engine);
   if (args.flag("run") && !is_in_path(std::string(engine.program)))

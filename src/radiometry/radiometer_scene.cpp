@@ -45,10 +45,11 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
   keep_energy(description, registry);
   if (!wavelengths.empty())
     set_wavelengths(description, wavelengths, {std::make_shared<const std::string>("wavelengths")});
-  if (make_wavelengths(description, registry)->bands().empty())
-    fail(wavelengths_plugin(description, registry).where,
-         "\"{}\" are wavelengths of an image of colours: a measurement needs bands, as in 608,551,455 or 400:700:10",
-         wavelengths_plugin(description, registry).name);
+  if (make_wavelengths(description, registry)->bands().empty()) {
+    const ParsedPlugin plugin = wavelengths_plugin(description, registry);
+    fail(plugin.where, "\"{}\" is for images of colours: a measurement needs bands, as in 608,551,455 or 400:700:10",
+         plugin.name);
+  }
   if (period) set_param(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
   ParsedPlugin& integrator = description.integrator;
   const IntegratorInfo& info = registry.integrators.get(integrator.name, integrator.where);

@@ -460,6 +460,21 @@ TEST_F(Commands, NoInputIsReplacedAndNoFileIsWrittenTwice) {
               HasSubstr("--csv and --json write to the same file"));
   EXPECT_FALSE(fs::exists(table));
   EXPECT_THAT(render({"-o", scene}).err, HasSubstr("would replace the input"));
+  ASSERT_EQ(render({"-o", path("in.exr"), "--spp", "1", "-q"}).code, 0);
+  const std::string image = text_of(path("in.exr"));
+  EXPECT_THAT(frond_command({"convert", path("in.exr"), "-o", path("in.exr")}).err,
+              HasSubstr("would replace the input"));
+  EXPECT_EQ(text_of(path("in.exr")), image);
+  EXPECT_THAT(frond_command({"difference", path("in.exr"), path("in.exr"), path("in.exr"), path("in.exr")}).err,
+              HasSubstr("A and B are the same images"));
+  EXPECT_THAT(frond_command({"submit", scene, "-o", scene, "--spp", "2", "--tasks", "2", "--slurm"}).err,
+              HasSubstr("would replace the input"));
+  EXPECT_THAT(frond_command({"submit", scene, "-o", path("a.tif"), "--spp", "2", "--tasks", "2", "--slurm"}).err,
+              HasSubstr("images are .exr, .png"));
+  EXPECT_THAT(frond_command({"submit", "-", "-o", path("a.exr"), "--spp", "2", "--tasks", "2", "--slurm"}).err,
+              HasSubstr("instead of standard input"));
+  EXPECT_THAT(frond_command({"canopy", "--lai", "1", "--leaf-area", "0.01", "--size", "1,1", "-o", "-"}).err,
+              HasSubstr("name a file"));
   EXPECT_EQ(text_of(scene), before);
 }
 

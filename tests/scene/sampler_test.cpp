@@ -111,8 +111,8 @@ TEST(LatticeSampler, EdgesHaveLessVarianceThanWithSobolsSequence) {
   EXPECT_LT(half_space_error(*sampler, {kFilm, kLater}, 256), 0.5) << "later pairs are not the same points";
 }
 
-// Bands are dealt out to the samples of a pixel in turn: where there are 8, 16 or 32 lanes' worth of them, a band has
-// every second, fourth or eighth sample, which must cover the whole pixel.
+// Bands are dealt out to the samples of a pixel in turn. Of 8, 16 or 32 bands each has every second, fourth or eighth
+// sample, and these must cover the whole pixel.
 TEST(LatticeSampler, SamplesInTurnCoverThePixel) {
   const auto sampler = make("lattice", 1);
   constexpr uint32_t kCount = 1024;

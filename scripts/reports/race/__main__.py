@@ -108,6 +108,7 @@ def main():
         print(page.section(about, raced))
     else:
         write_section(DOCUMENT, "race", page.section(about, kept()))
+        write_section(DOCUMENT, "race_summary", page.overview(kept()), "race")
 
 
 def kept():

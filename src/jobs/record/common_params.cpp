@@ -27,6 +27,12 @@ bool has(const Arguments& args, std::string_view name) { return args.declares(na
 
 }  // namespace
 
+std::string binary_file_of(const Arguments& args, std::string_view name) {
+  std::string file = args.text(name);
+  if (file == "-") fail({}, "{} - would write a binary file to standard output: name a file", args.spelled(name));
+  return file;
+}
+
 std::vector<std::string> materials_of(const JobRun& run) {
   std::vector<std::string> texts{material_text(run.args.texts("material"))};
   if (has(run.args, "with"))

@@ -20,6 +20,8 @@ constexpr JobParam output_param(std::string_view doc, bool required, std::string
   return JobParam("output", ArgumentKind::text, doc,
                   {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = required, .excludes = excludes});
 }
+/// Returns the name of a binary file to write. Throws InputError for "-", standard output.
+std::string binary_file_of(const Arguments& args, std::string_view name);
 inline constexpr JobParam kSwapParam(
     "swap", ArgumentKind::texts,
     "MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; \"*=PLUGIN\" replaces every leaf.",

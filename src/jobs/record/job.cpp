@@ -84,7 +84,7 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
 /// --csv and --json are written after the log's check, so that strict mode does not write them on warnings.
 Result run_job(const JobInfo& job, const JobRun& run) {
   run.args.check();
-  if (!job.extends) check_outputs(run, job.params);  // otherwise the jobs that it starts write the outputs
+  check_outputs(run, job.params);
   StrictLog& log = run.context.log();
   log.begin(run.args.declares("strict") && run.args.flag("strict"));
   Result result = job.run(run);
