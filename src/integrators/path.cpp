@@ -6,6 +6,7 @@
 #include "integrators/path_parts.h"
 #include "integrators/path_pilots.h"
 #include "integrators/path_tracer.h"
+#include "integrators/vertex_numbers.h"
 
 namespace frond {
 namespace {
@@ -24,16 +25,16 @@ constexpr Param kPath[] = {
     {.name = "lightsamples",
      .kind = ParamKind::integer,
      .default_value = 0,
-     .range = {0, 2},
+     .range = {0, kMostSplit},
      .doc = "Light samples at the first hit; later hits have one. 0: one or two, whichever has less noise in the same "
             "time, by a pilot; always one where all lights are points or directions."},
     {.name = "scatteredrays",
      .kind = ParamKind::integer,
      .default_value = 0,
-     .range = {0, 2},
-     .doc = "Rays that the first hit scatters where its surface is not a mirror; later hits scatter one. 0: two on "
-            "materials that reflect and transmit light and return at least 3/4 of it, and, if the scene has no light "
-            "to sample (a uniform sky), on all others too if that has less noise in the same time, by a pilot."},
+     .range = {0, kMostSplit},
+     .doc =
+         "Rays that the first hit scatters where its surface is not a mirror; later hits scatter one. 0: one or two by "
+         "material, whichever has less noise in the same time, by a pilot."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
@@ -59,21 +60,23 @@ class PathIntegrator final : public Integrator {
   explicit PathIntegrator(const Params& p)
       : settings_{.max_depth = p.integer("maxdepth"),
                   .sample_lights = p.boolean("sampledirect"),
-                  .light_samples = p.integer("lightsamples"),
-                  .scattered_rays = p.integer("scatteredrays"),
+                  .light_samples = std::max(1, p.integer("lightsamples")),
+                  .scattered_rays = std::max(1, p.integer("scatteredrays")),
                   .cut_off_attenuation = p.string("termination") == "attenuation",
                   .cutoff = float(p.real("cutoff")),
                   .regularizes = p.boolean("regularize"),
-                  .bright = {}},
+                  .rays_by_material = {}},
+        adapted_{.light_samples = p.integer("lightsamples") == 0, .scattered_rays = p.integer("scatteredrays") == 0},
         strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
 
-  /// Selects the numbers of scattered rays and of light samples at the first vertex.
   std::string adapt(const World& world, const PilotRays& rays) override {
+    AdaptedSettings adapted = adapted_;
+    adapted.light_samples = adapted.light_samples && settings_.sample_lights && selector_.has_extent();
+    if (!adapted.light_samples && !adapted.scattered_rays) return {};
     try {
-      adapt_scattered_rays(world, rays);
-      adapt_light_samples(world, rays);
+      adapt_to_scene(world, selector_, adapted, rays, settings_);
     } catch (const SurfaceError&) {
       // The render throws it again, and its caller names the material.
     }
@@ -85,33 +88,17 @@ class PathIntegrator final : public Integrator {
   }
 
  private:
-  void adapt_scattered_rays(const World& world, const PilotRays& rays) {
-    if (settings_.scattered_rays != 0) return;
-    if (selector_.empty() && two_rays_pay(world, selector_, settings_, rays))
-      settings_.scattered_rays = 2;
-    else
-      settings_.bright = bright_materials(world, rays);
-  }
-
-  void adapt_light_samples(const World& world, const PilotRays& rays) {
-    if (settings_.light_samples != 0) return;
-    settings_.light_samples = 1;
-    if (!settings_.sample_lights || !selector_.has_extent()) return;
-    if (two_light_samples_pay(world, selector_, settings_, rays)) settings_.light_samples = 2;
-  }
-
   /// What first hits take two of; empty if nothing.
   std::string summary() const {
     std::vector<std::string> two;
-    const auto bright = std::ranges::count(settings_.bright, true);
-    if (settings_.scattered_rays == 2) two.emplace_back("two scattered rays");
-    if (bright > 0)
-      two.push_back(fmt::format("two scattered rays on {} bright material{}", bright, bright == 1 ? "" : "s"));
-    if (settings_.light_samples == 2 && selector_.has_extent()) two.emplace_back("two light samples");
+    if (const auto count = std::ranges::count(settings_.rays_by_material, 2); count > 0)
+      two.push_back(fmt::format("two scattered rays on {} material{}", count, count == 1 ? "" : "s"));
+    if (settings_.light_samples == 2) two.emplace_back("two light samples");
     return two.empty() ? "" : fmt::format("path: at first hits {}", fmt::join(two, ", "));
   }
 
   PathSettings settings_;
+  AdaptedSettings adapted_;
   LightSelector::Strategy strategy_;
   LightSelector selector_;
 };

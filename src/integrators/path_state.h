@@ -14,18 +14,19 @@ enum class Use : uint64_t {
   bsdf,
   roulette,
   albedo,
-  second_shadow_ray,
-  second_light_bsdf,
-  second_bsdf,
+  count,
 };
 
 /// Key of the random numbers of one vertex: of its rays, and of its streams by use.
 struct VertexKey {
   uint64_t value;
 
-  /// The step differs from that of a stream's counter, so that streams do not overlap.
-  uint64_t of(Use use) const { return value + uint64_t(use) * 0xd1342543de82ef95ull; }
-  RandomStream stream(Use use) const { return RandomStream(of(use)); }
+  /// For one of several samples or rays, by its index `which`. The step differs from that of a stream's counter, so
+  /// that streams do not overlap.
+  uint64_t of(Use use, int which = 0) const {
+    return value + (uint64_t(use) + uint64_t(which) * uint64_t(Use::count)) * 0xd1342543de82ef95ull;
+  }
+  RandomStream stream(Use use, int which = 0) const { return RandomStream(of(use, which)); }
 };
 
 /// State of a path.
@@ -36,12 +37,12 @@ struct Path {
   /// Density of the last direction, 1/sr, for MIS with light sampling: the sum over the rays that the last vertex
   /// scattered; infinite if no light sample competes.
   float scatter_pdf;
-  float light_samples;               ///< number of light samples at the last vertex, for MIS
-  float scattered_rays;              ///< number of rays that the current vertex scatters, for MIS
-  float share;                       ///< factor on what the path finds: 1/2 if its first vertex scattered two rays
-  float power_factor;                ///< factor by which refraction alone has divided the throughput
-  int depth;                         ///< scattering events so far
-  bool is_wide;                      ///< one of them was not specular
+  float light_samples;  ///< number of light samples at the last vertex, for MIS
+  int scattered_rays;   ///< number of rays that the current vertex scatters
+  float share;          ///< factor on what the path finds: 1 / (number of rays that its first vertex scattered)
+  float power_factor;   ///< factor by which refraction alone has divided the throughput
+  int depth;            ///< scattering events so far
+  bool is_wide;         ///< one of them was not specular
   LightSelector::LitPoint previous;  ///< the last vertex
   VertexKey key;                     ///< of the current vertex
 };

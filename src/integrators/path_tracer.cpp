@@ -17,12 +17,13 @@ namespace {
 /// Traces the paths of a bundle together, one vertex after the other.
 class PathTracer final : public Tracer {
  public:
-  PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings)
-      : world_(world), selector_(selector), settings_(settings) {}
+  PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings, SplitRecord* record)
+      : world_(world), selector_(selector), settings_(settings), record_(record) {}
 
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
     at_ = nullptr;
+    if (record_) *record_ = SplitRecord();
     with_surface_of_errors(at_, [this] { trace(); });
   }
 
@@ -30,20 +31,23 @@ class PathTracer final : public Tracer {
   static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
   static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
 
-  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones.
+  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones, and so on.
   void trace() {
     branch_ = 0;
     vertex_ = 0;
     follow(advance(meet_first(begin())));
-    if (branched_.empty()) return;
-    branch_ = 1;
-    for (const size_t i : branched_) paths_[i] = branches_[i];
-    follow(branched_);
+    for (const Branch& branch : branches_) {
+      ++branch_;
+      for (const size_t i : branch.alive) paths_[i] = branch.paths[i];
+      follow(branch.alive);
+    }
   }
 
   /// Traces paths from their second vertex on.
   void follow(LaneSet alive) {
+    if (record_) part_ = &record_->scattered[size_t(branch_)];
     for (vertex_ = 1; !alive.empty(); ++vertex_) alive = advance(meet(alive));
+    part_ = nullptr;
   }
 
   /// One vertex of all paths, whose rays have met surfaces: adds emission, samples lights and BSDFs. Returns the paths
@@ -57,7 +61,7 @@ class PathTracer final : public Tracer {
   }
 
   LaneSet begin() {
-    branched_ = LaneSet();
+    for (Branch& branch : branches_) branch.alive = LaneSet();
     const LaneSet lanes(bundle_->wanted);
     for (const size_t i : lanes) {
       Path& path = paths_[i];
@@ -85,7 +89,7 @@ class PathTracer final : public Tracer {
   /// Key of this vertex of a path.
   VertexKey key_of(size_t lane) const { return {hash_key(bundle_->keys[lane], place_of_numbers())}; }
 
-  /// Index of this vertex for random numbers. Those of the second branches lie beyond those of any first one.
+  /// Index of this vertex for random numbers. Those of a branch lie beyond those of any path of the one before.
   uint64_t place_of_numbers() const { return uint64_t(vertex_) + (uint64_t(branch_) << 21); }
 
   /// Intersects camera rays in packets, whose rays do not depend on which results are wanted: a sample does not depend
@@ -97,7 +101,7 @@ class PathTracer final : public Tracer {
       const RayPacket packet{&bundle_->rays[first], &bundle_->keys[first], bundle_->lanes >> first & kPacket};
       hits |= world_.intersect(packet, &points_[first]) << first;
     }
-    bundle_->traced += alive.size();
+    count_rays(alive);
     return after_rays(alive, hits);
   }
 
@@ -106,7 +110,7 @@ class PathTracer final : public Tracer {
     uint32_t hits = 0;
     for (const size_t i : alive)
       if (world_.intersect(paths_[i].ray, key_of(i).of(Use::ray), points_[i])) hits |= 1u << i;
-    bundle_->traced += alive.size();
+    count_rays(alive);
     return after_rays(alive, hits);
   }
 
@@ -139,22 +143,31 @@ class PathTracer final : public Tracer {
       if (path.depth >= settings_.max_depth) continue;
       if (settings_.regularizes && path.is_wide) bsdf = bsdf->regularized(arena_);
       bsdfs_[i].set(*bsdf, point.hit, -path.ray.d);
-      path.scattered_rays = vertex_ == 0 && scatters_two(point, *bsdf) ? 2 : 1;
+      path.scattered_rays = vertex_ == 0 ? scattered_rays(point, *bsdf) : 1;
       scattering.add(i);
     }
     at_ = nullptr;
     return scattering;
   }
 
-  /// Whether a first vertex scatters two rays.
-  bool scatters_two(const SurfacePoint& point, const Bsdf& bsdf) const {
-    if (settings_.scattered_rays == 2) return is_rough(bsdf);
-    return point.material_id < settings_.bright.size() && settings_.bright[point.material_id];
+  /// Number of rays that a first vertex scatters.
+  int scattered_rays(const SurfacePoint& point, const Bsdf& bsdf) const {
+    const auto& by_material = settings_.rays_by_material;
+    const int rays = point.material_id < by_material.size() ? by_material[point.material_id] : settings_.scattered_rays;
+    return rays > 1 && is_rough(bsdf) ? rays : 1;
   }
 
   void add(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
     if (!radiance.is_physical() || !(weight >= 0)) return blame(lane, light);
-    bundle_->results[lane].radiance += paths_[lane].throughput * radiance * (weight * paths_[lane].share);
+    const SampledSpectrum added = paths_[lane].throughput * radiance * (weight * paths_[lane].share);
+    bundle_->results[lane].radiance += added;
+    if (part_) part_->radiance[lane] += added;
+  }
+
+  void count_rays(const LaneSet& lanes) {
+    bundle_->traced += lanes.size();
+    if (!part_) return;
+    for (const size_t i : lanes) ++part_->rays[i];
   }
 
   /// The film counts a sample that is not a number, and takes it as black.
@@ -199,24 +212,29 @@ class PathTracer final : public Tracer {
 
   /// Adds light samples, at the first vertex of each path as many as the settings say.
   void add_sampled_lights(const LaneSet& lanes) {
-    const bool twice = vertex_ == 0 && settings_.light_samples == 2 && selector_.has_extent();
-    for (const size_t i : lanes) paths_[i].light_samples = twice ? 2 : 1;
+    const int count = vertex_ == 0 && selector_.has_extent() ? settings_.light_samples : 1;
+    for (const size_t i : lanes) paths_[i].light_samples = float(count);
     // Random numbers that no light of the scene uses are not generated.
-    const LaneSet twins = twice ? lanes : LaneSet();
-    if (selector_.has_choice()) draw(lanes, twins, Number::light, numbers_);
-    if (selector_.has_extent()) draw(lanes, twins, Number::on_light, pairs_);
-    add_light_samples(lanes, 0, Use::light_bsdf, Use::shadow_ray);
-    if (twice) add_light_samples(lanes, 1, Use::second_light_bsdf, Use::second_shadow_ray);
+    const SplitLanes split(lanes, count);
+    if (selector_.has_choice()) draw(split, Number::light, numbers_);
+    if (selector_.has_extent()) draw(split, Number::on_light, pairs_);
+    for (int which = 0; which < count; ++which) {
+      if (record_ && vertex_ == 0) {
+        part_ = &record_->lights[size_t(which)];
+        part_->paths = lanes;
+      }
+      add_light_samples(lanes, which);
+    }
   }
 
-  void add_light_samples(const LaneSet& lanes, size_t which, Use bsdf, Use shadow_ray) {
+  void add_light_samples(const LaneSet& lanes, int which) {
     LaneSet lit, coherent;
     for (const size_t i : lanes) {
       const SurfacePoint& point = points_[i];
       at_ = &point;
       const Path& path = paths_[i];
-      const float number = selector_.has_choice() ? numbers_[which][i] : 0;
-      Vec2 on_light = selector_.has_extent() ? pairs_[which][i] : Vec2{number, 0};
+      const float number = selector_.has_choice() ? numbers_[size_t(which)][i] : 0;
+      Vec2 on_light = selector_.has_extent() ? pairs_[size_t(which)][i] : Vec2{number, 0};
       const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light.x, number);
       if (!chosen) continue;
       const auto [light, probability] = *chosen;
@@ -227,25 +245,25 @@ class PathTracer final : public Tracer {
         continue;
       }
       float scatter_pdf = 0;
-      const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(bsdf), scatter_pdf);
+      const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(Use::light_bsdf, which), scatter_pdf);
       if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY)) {
         blame_material(i);
         continue;
       }
       if (f_cos.is_black()) continue;
-      scatter_pdf *= path.scattered_rays;
+      scatter_pdf *= float(path.scattered_rays);
       const float light_pdf = path.light_samples * sample->pdf * probability;
       const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
       lit_[i].radiance = f_cos * sample->radiance;
       lit_[i].weight = weight / light_pdf;
       lit_[i].light = light;
       set_shadow_ray(point.hit, *sample, path.ray.time, shadow_rays_[i]);
-      shadow_keys_[i] = path.key.of(shadow_ray);
+      shadow_keys_[i] = path.key.of(Use::shadow_ray, which);
       lit.add(i);
       if (vertex_ == 0 && (light->is_delta() || !light->is_distant() || light->sun())) coherent.add(i);
     }
     at_ = nullptr;
-    bundle_->traced += lit.size();
+    count_rays(lit);
     const uint32_t dark = occluded_together(coherent) | occluded(LaneSet(lit.bits() & ~coherent.bits()));
     for (const size_t i : LaneSet(lit.bits() & ~dark)) add(i, *lit_[i].light, lit_[i].radiance, lit_[i].weight);
   }
@@ -294,11 +312,10 @@ class PathTracer final : public Tracer {
 
   /// Samples the next directions. Returns the paths that continue, including those in `passed`.
   LaneSet scatter(const LaneSet& lanes, const LaneSet& passed) {
-    LaneSet twins;
-    for (const size_t i : lanes)
-      if (paths_[i].scattered_rays == 2) twins.add(i);
-    draw(lanes, twins, Number::lobe, numbers_);
-    draw(lanes, twins, Number::direction, pairs_);
+    SplitLanes split;
+    for (const size_t i : lanes) split.add(i, paths_[i].scattered_rays);
+    draw(split, Number::lobe, numbers_);
+    draw(split, Number::direction, pairs_);
     LaneSet alive = passed;
     for (const size_t i : lanes) {
       Path& path = paths_[i];
@@ -306,31 +323,37 @@ class PathTracer final : public Tracer {
       if (path.depth == 0 && bundle_->albedo_samples > 0)
         bundle_->results[i].first.albedo = first_albedo(points_[i], path.lambda, -path.ray.d, bundle_->albedo_samples,
                                                         path.key.of(Use::albedo), arena_);
-      if (path.scattered_rays == 2) {
-        branches_[i] = path;
-        if (scatter(i, numbers_[1][i], pairs_[1][i], Use::second_bsdf, branches_[i])) branched_.add(i);
+      for (int which = 0; record_ && vertex_ == 0 && which < path.scattered_rays; ++which)
+        record_->scattered[size_t(which)].paths.add(i);
+      for (int which = 1; which < path.scattered_rays; ++which) {
+        Branch& branch = branches_[size_t(which) - 1];
+        branch.paths[i] = path;
+        if (scatter(i, which, branch.paths[i])) branch.alive.add(i);
       }
-      if (scatter(i, numbers_[0][i], pairs_[0][i], Use::bsdf, path)) alive.add(i);
+      if (scatter(i, 0, path)) alive.add(i);
       if (branch_ == 0) bundle_->results[i].scatterings = path.depth;
     }
     at_ = nullptr;
     return alive;
   }
 
-  /// Samples a direction. Returns false if the path ends.
-  bool scatter(size_t lane, float uc, Vec2 u, Use use, Path& path) {
+  /// Samples the direction of one of the rays that a vertex scatters. Returns false if the path ends.
+  bool scatter(size_t lane, int which, Path& path) {
+    const float uc = numbers_[size_t(which)][lane];
+    const Vec2 u = pairs_[size_t(which)][lane];
     LocalBsdf::Sample sample;
-    if (!bsdfs_[lane].sample(uc, u, path.key.stream(use), sample)) return false;
+    if (!bsdfs_[lane].sample(uc, u, path.key.stream(Use::bsdf, which), sample)) return false;
     if (!is_possible(sample)) {
       blame_material(lane);
       return false;
     }
     path.throughput *= sample.weight;
-    path.share /= path.scattered_rays;
+    path.share /= float(path.scattered_rays);
     path.power_factor *= sample.power_factor;
     path.lambda.retire_black_lanes(path.throughput);
     path.is_wide = path.is_wide || !sample.is_specular;
-    path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf * path.scattered_rays;
+    path.scatter_pdf =
+        !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf * float(path.scattered_rays);
     set_ray(points_[lane].hit, sample.wi, path);
     if (ends(path)) return false;
     ++path.depth;
@@ -359,39 +382,44 @@ class PathTracer final : public Tracer {
     return sum;
   }
 
-  /// Draws the sampler's numbers of this vertex for these paths, two for the `twins` among them.
+  /// Draws the sampler's numbers of this vertex.
   template <class T>
-  void draw(const LaneSet& lanes, const LaneSet& twins, Number number, TwinNumbers<T>& u) const {
-    draw_numbers(*bundle_, place_of_numbers(), number, lanes, twins, u);
+  void draw(const SplitLanes& lanes, Number number, SplitNumbers<T>& u) const {
+    draw_numbers(*bundle_, place_of_numbers(), number, lanes, record_ != nullptr, u);
   }
 
   const World& world_;
   const LightSelector& selector_;
   const PathSettings& settings_;
-  PathBundle* bundle_ = nullptr;      ///< current bundle
-  const SurfacePoint* at_ = nullptr;  ///< surface whose plug-ins are called
+  PathBundle* bundle_ = nullptr;       ///< current bundle
+  const SurfacePoint* at_ = nullptr;   ///< surface whose plug-ins are called
+  SplitRecord* record_;                ///< or nullptr
+  SplitRecord::Part* part_ = nullptr;  ///< to which rays and radiance belong, if they are recorded
   Arena arena_;
   /// Index of the vertex for random numbers; invisible surfaces count too.
   int vertex_ = 0;
-  /// 1 while the second rays of first vertices are followed.
-  int branch_ = 0;
-  LaneSet branched_;                  ///< paths whose first vertex scatters a second ray
-  std::array<Path, kMost> branches_;  ///< the same paths with that ray
+  int branch_ = 0;  ///< index of the rays, among those of each first vertex, that are followed
+  /// Paths whose first vertices scatter several rays, with one of the rays after the first.
+  struct Branch {
+    LaneSet alive;
+    std::array<Path, kMost> paths;
+  };
+  std::array<Branch, kMostSplit - 1> branches_;
   std::array<Path, kMost> paths_;
   std::array<SurfacePoint, kMost> points_;
   std::array<LocalBsdf, kMost> bsdfs_;
   std::array<Lit, kMost> lit_;
   std::array<Ray, kMost> shadow_rays_;
   std::array<uint64_t, kMost> shadow_keys_{};
-  TwinNumbers<float> numbers_;
-  TwinNumbers<Vec2> pairs_;
+  SplitNumbers<float> numbers_;
+  SplitNumbers<Vec2> pairs_;
 };
 
 }  // namespace
 
 std::unique_ptr<Tracer> make_path_tracer(const World& world, const LightSelector& selector,
-                                         const PathSettings& settings) {
-  return std::make_unique<PathTracer>(world, selector, settings);
+                                         const PathSettings& settings, SplitRecord* record) {
+  return std::make_unique<PathTracer>(world, selector, settings, record);
 }
 
 }  // namespace frond

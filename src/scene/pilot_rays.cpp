@@ -1,9 +1,11 @@
 #include "scene/pilot_rays.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/random.h"
 #include "scene/scene.h"
+#include "spectra/color/color_space.h"
 
 namespace frond {
 
@@ -20,14 +22,15 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   constexpr uint32_t kAll = (1u << kSamples) - 1;
   PathBundle bundle{.sampler = sampler, .samples = {x, y, number * kSamples, kSamples}, .lanes = kAll, .wanted = kAll};
   std::array<Vec2, kSamples> on_film, on_lens{};
-  std::array<float, kSamples> time{};
+  std::array<float, kSamples> time{}, wavelength;
+  sampler.get1d(bundle.samples, uint32_t(Dimension::wavelengths), wavelength.data());
   sampler.get2d(bundle.samples, uint32_t(Dimension::film), on_film.data());
   if (scene_.camera().uses_lens()) sampler.get2d(bundle.samples, uint32_t(Dimension::lens), on_lens.data());
   if (!scene_.has_pixel_jitter()) on_film.fill({0.5f, 0.5f}), on_lens.fill({0.5f, 0.5f});
   if (scene_.has_motion()) sampler.get1d(bundle.samples, uint32_t(Dimension::time), time.data());
-  bundle.lambda.fill(scene_.wavelengths().sample_in_turn(pixel, place.uniform()));
   for (uint32_t k = 0; k < kSamples; ++k) {
     on_film[k] = {float(x) + on_film[k].x, float(y) + on_film[k].y};
+    bundle.lambda[k] = scene_.wavelengths().sample_in_turn(bundle.samples.first + k, wavelength[k]);
     bundle.keys[k] = sample_key(scene_.seed(), x, y, bundle.samples.first + k);
   }
   scene_.camera().rays(on_film.data(), on_lens.data(), int(kSamples), bundle.rays.data());
@@ -36,6 +39,17 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
     if (const CameraMotion* motion = scene_.camera_motion()) motion->move(bundle.rays[k]);
   }
   return bundle;
+}
+
+// As noise of XYZ would be that of brightness alone: the sampling of wavelengths keeps the sum of XYZ nearly free of
+// noise.
+std::array<double, 3> ScenePilotRays::color(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const {
+  const SensorResponse response = scene_.wavelengths().sensor(radiance, lambda);
+  const std::string_view space = scene_.wavelengths().film_space();
+  if (space.empty())
+    return {std::accumulate(response.value.begin(), response.value.begin() + response.count, 0.), 0, 0};
+  static const Matrix3 kSrgbFromXyz = find_color_space("linear sRGB")->rgb_from_xyz;
+  return space == kXyzName ? kSrgbFromXyz * response.color() : response.color();
 }
 
 }  // namespace frond

@@ -12,6 +12,7 @@ class ScenePilotRays final : public PilotRays {
   /// `scene` must outlive the object.
   explicit ScenePilotRays(const Scene& scene) : scene_(scene) {}
   PathBundle bundle(uint64_t pixel, uint64_t number) const override;
+  std::array<double, 3> color(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override;
 
  private:
   const Scene& scene_;

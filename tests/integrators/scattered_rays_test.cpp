@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
+#include <functional>
 
 #include "tests/support/render_text.h"
 
@@ -35,36 +35,37 @@ Rotate -40 1 0 0 Translate 1 0 0 Shape "disk" AttributeEnd
                      film, integrator, bright, bright, bright, bright, dark, dark, dark, dark);
 }
 
-const std::string kOne = "\"integer scatteredrays\" 1", kTwo = "\"integer scatteredrays\" 2";
+std::string rays(int count) { return fmt::format("\"integer scatteredrays\" {}", count); }
 
 // 5 standard errors: a false alarm in 1.7 million. Also where attenuation ends paths, and without
 // light samples.
 TEST(ScatteredRays, TwoHaveLessNoiseAndTheSameMean) {
   for (const char* manner : {"", R"( "string termination" "attenuation")", R"( "bool sampledirect" false)"}) {
-    const Film one = render_text(scene(kOne + manner, ".45", ".45"), {.samples = 256});
-    const Film two = render_text(scene(kTwo + manner, ".45", ".45"), {.samples = 256});
-    const auto a = channel_mean(one, 1), b = channel_mean(two, 1);
-    EXPECT_NEAR(a.mean, b.mean, 5 * std::hypot(a.error, b.error)) << manner;
-    EXPECT_LT(b.error, 0.95 * a.error) << manner;
-    EXPECT_LT(a.error, 0.01 * a.mean) << "the test has lost its power" << manner;
+    const auto one = channel_mean(render_text(scene(rays(1) + manner, ".45", ".45"), {.samples = 256}), 1);
+    const auto two = channel_mean(render_text(scene(rays(2) + manner, ".45", ".45"), {.samples = 256}), 1);
+    EXPECT_NEAR(two.mean, one.mean, 5 * std::hypot(two.error, one.error)) << manner;
+    EXPECT_LT(two.error, 0.95 * one.error) << manner;
+    EXPECT_LT(one.error, 0.01 * one.mean) << "the test has lost its power" << manner;
   }
 }
 
-// The decisions are seen in the bits of three pixels: of the bright sheet, the dark one and the ground.
-TEST(ScatteredRays, AreTwoForMaterialsThatReflectAndTransmitMostLight) {
-  const auto pixels = [](const std::string& integrator) {
-    const Film image = render_text(scene(integrator, ".45", ".1"), {.samples = 16});
-    return std::array{image.mean(27, 16), image.mean(5, 16), image.mean(16, 2)};
-  };
-  const auto one = pixels(kOne), two = pixels(kTwo), adapted = pixels("");
-  for (int i = 0; i < 3; ++i) EXPECT_NE(one[i], two[i]) << i;
-  EXPECT_EQ(adapted[0], two[0]);
-  EXPECT_EQ(adapted[1], one[1]);
-  EXPECT_EQ(adapted[2], one[2]);
-}
+/// Number of rays that a render with a pilot scatters at a pixel, from the bits of renders with a stated number.
+class RaysAtPixel {
+ public:
+  explicit RaysAtPixel(const std::function<Film(const std::string&)>& render)
+      : adapted_(render(rays(0))), one_(render(rays(1))), two_(render(rays(2))) {}
+  /// 0 if it is neither one nor two, or if both have the same bits.
+  int operator()(int x, int y) const {
+    const bool is_one = adapted_.mean(x, y) == one_.mean(x, y), is_two = adapted_.mean(x, y) == two_.mean(x, y);
+    return is_one == is_two ? 0 : is_one ? 1 : 2;
+  }
 
-/// An opaque sheet above a ground, or without it, under a uniform sky. No light is sampled.
-Film under_sky(const std::string& integrator, bool has_ground) {
+ private:
+  Film adapted_, one_, two_;
+};
+
+/// A sheet above a ground, or without it, under a uniform sky. No light is sampled.
+Film under_sky(const std::string& integrator, const char* reflectance, bool has_ground) {
   return render_text(fmt::format(R"(
 LookAt 0 -2 3  0 0 0  0 1 0
 Camera "perspective" "float fov" 50
@@ -73,20 +74,30 @@ PixelFilter "box"
 Integrator "path" "integer maxdepth" 50 {}
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"
-Material "diffuse" "spectrum reflectance" [360 .4 2500 .4]
+Material "diffuse" "spectrum reflectance" [360 {} 2500 {}]
 Shape "disk"
 {}
 )",
-                                 integrator, has_ground ? R"(Translate 0 0 -.5 Shape "disk" "float radius" 4)" : ""),
+                                 integrator, reflectance, reflectance,
+                                 has_ground ? R"(Translate 0 0 -.5 Shape "disk" "float radius" 4)" : ""),
                      {.samples = 16});
 }
 
 // The sky is noise where surfaces hide it from one another, else only the edge is.
 TEST(ScatteredRays, AreTwoUnderASkyWhereThisHasLessNoiseInTheSameTime) {
-  EXPECT_TRUE(under_sky("", true) == under_sky(kTwo, true));
-  EXPECT_FALSE(under_sky("", true) == under_sky(kOne, true));
-  EXPECT_TRUE(under_sky("", false) == under_sky(kOne, false));
-  EXPECT_FALSE(under_sky("", false) == under_sky(kTwo, false));
+  const RaysAtPixel with([](const std::string& integrator) { return under_sky(integrator, ".4", true); });
+  const RaysAtPixel without([](const std::string& integrator) { return under_sky(integrator, ".4", false); });
+  EXPECT_EQ(with(16, 16), 2);
+  EXPECT_EQ(without(16, 16), 1);
+}
+
+// The pixels show the bright sheet and the dark one. The light of the lamp is sampled, so that scattered rays cause
+// noise mostly on the bright one.
+TEST(ScatteredRays, AreTwoForTheMaterialsThatCauseTheNoise) {
+  const RaysAtPixel at(
+      [](const std::string& integrator) { return render_text(scene(integrator, ".45", ".02"), {.samples = 16}); });
+  EXPECT_EQ(at(27, 16), 2);
+  EXPECT_EQ(at(5, 16), 1);
 }
 
 // Otherwise the parts of an image would not fit together.
@@ -114,7 +125,7 @@ Rotate 30 1 0 0 Shape "disk"
                                    integrator),
                        {.samples = 16});
   };
-  const Film one = image(kOne), two = image(kTwo);
+  const Film one = image(rays(1)), two = image(rays(2));
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) EXPECT_NEAR(two.mean(x, y)[1], one.mean(x, y)[1], 1e-5 * one.mean(x, y)[1]);
 }

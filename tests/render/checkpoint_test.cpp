@@ -139,7 +139,7 @@ TEST_F(Checkpoints, OfAnAdaptiveRenderAreOfOnePlan) {
   scene_ = folder_.write("tall.pbrt", testing::a_scene("", 40, 600));
   const LoadedScene scene =
       SceneRender{.wavelengths = "smpte", .channels = {"normal", "position"}, .adaptive = true}.load(session_, scene_);
-  const NoiseRequest request{.max_rms = 0.003};
+  const NoiseRequest request{.max_rms = 0.002};
   RenderPart whole = scene.empty_part();
   session_.render_to(scene, request, whole);
   ASSERT_GT(whole.header.round, 0);
