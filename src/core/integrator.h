@@ -83,8 +83,8 @@ class Tracer {
 class PilotRays {
  public:
   virtual ~PilotRays() = default;
-  /// Returns a bundle of samples of a pixel, which `pixel` selects at random.
-  virtual PathBundle bundle(uint64_t pixel, uint64_t bundle) const = 0;
+  /// Returns bundle 0 or 1 of a pixel, which `pixel` selects at random.
+  virtual PathBundle bundle(uint64_t pixel, uint64_t number) const = 0;
   /// Linear colour that a radiance adds to the image; where its channels are spectral bands, the sum of what it adds to
   /// them, and zeros.
   virtual std::array<double, 3> color(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const = 0;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "core/integrator.h"
 #include "integrators/path_tracer.h"
 
@@ -13,8 +11,8 @@ struct AdaptedSettings {
   bool scattered_rays;  ///< one or two by material
 };
 
-/// Selects how many light samples and scattered rays the first vertices of paths take, so that the product of an
-/// image's variance and CPU time is smallest, by paths of a few pixels. Throws SurfaceError.
+/// Selects how many light samples and scattered rays the first vertices of paths take, so that images have the least
+/// variance in the same CPU time, by paths of a few pixels (docs/internals.md). Throws SurfaceError.
 void adapt_to_scene(const World& world, const LightSelector& selector, const AdaptedSettings& adapted,
                     const PilotRays& rays, PathSettings& settings);
 

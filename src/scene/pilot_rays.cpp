@@ -11,7 +11,8 @@ namespace frond {
 
 // The numbers are the sampler's, so that the samples of a pixel are as well distributed as those of the render. The
 // dimensions are those that the render loop would use. Without the filter: where pixels share samples, noise is that of
-// the samples inside a pixel.
+// the samples inside a pixel. Each pixel has samples of its own, as small images have fewer pixels than the pilot asks
+// for. All bundles have the same of many bands: the difference between two is noise.
 PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   constexpr uint32_t kSamples = PathBundle::kMost;
   const FilmSettings& film = scene_.film();
@@ -20,17 +21,19 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   const int x = std::min(int(place.uniform() * float(film.width)), film.width - 1);
   const int y = std::min(int(place.uniform() * float(film.height)), film.height - 1);
   constexpr uint32_t kAll = (1u << kSamples) - 1;
-  PathBundle bundle{.sampler = sampler, .samples = {x, y, number * kSamples, kSamples}, .lanes = kAll, .wanted = kAll};
+  PathBundle bundle{
+      .sampler = sampler, .samples = {x, y, (2 * pixel + number) * kSamples, kSamples}, .lanes = kAll, .wanted = kAll};
   std::array<Vec2, kSamples> on_film, on_lens{};
   std::array<float, kSamples> time{}, wavelength;
   sampler.get1d(bundle.samples, uint32_t(Dimension::wavelengths), wavelength.data());
+  if (!scene_.has_wavelength_jitter()) wavelength.fill(0.5f);
   sampler.get2d(bundle.samples, uint32_t(Dimension::film), on_film.data());
   if (scene_.camera().uses_lens()) sampler.get2d(bundle.samples, uint32_t(Dimension::lens), on_lens.data());
   if (!scene_.has_pixel_jitter()) on_film.fill({0.5f, 0.5f}), on_lens.fill({0.5f, 0.5f});
   if (scene_.has_motion()) sampler.get1d(bundle.samples, uint32_t(Dimension::time), time.data());
   for (uint32_t k = 0; k < kSamples; ++k) {
     on_film[k] = {float(x) + on_film[k].x, float(y) + on_film[k].y};
-    bundle.lambda[k] = scene_.wavelengths().sample_in_turn(bundle.samples.first + k, wavelength[k]);
+    bundle.lambda[k] = scene_.wavelengths().sample_in_turn(k, wavelength[k]);
     bundle.keys[k] = sample_key(scene_.seed(), x, y, bundle.samples.first + k);
   }
   scene_.camera().rays(on_film.data(), on_lens.data(), int(kSamples), bundle.rays.data());

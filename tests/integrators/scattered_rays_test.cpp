@@ -49,18 +49,26 @@ TEST(ScatteredRays, TwoHaveLessNoiseAndTheSameMean) {
   }
 }
 
-/// Number of rays that a render with a pilot scatters at a pixel, from the bits of renders with a stated number.
-class RaysAtPixel {
+/// Number of rays that a render with a pilot scatters, from renders with a stated number.
+class ScatteredByPilot {
  public:
-  explicit RaysAtPixel(const std::function<Film(const std::string&)>& render)
+  explicit ScatteredByPilot(const std::function<Film(const std::string&)>& render)
       : adapted_(render(rays(0))), one_(render(rays(1))), two_(render(rays(2))) {}
-  /// 0 if it is neither one nor two, or if both have the same bits.
-  int operator()(int x, int y) const {
-    const bool is_one = adapted_.mean(x, y) == one_.mean(x, y), is_two = adapted_.mean(x, y) == two_.mean(x, y);
-    return is_one == is_two ? 0 : is_one ? 1 : 2;
+  /// At a pixel, from the bits of its colour; 0 if it is neither one nor two, or if both have the same bits.
+  int at(int x, int y) const {
+    return number(adapted_.mean(x, y) == one_.mean(x, y), adapted_.mean(x, y) == two_.mean(x, y));
   }
+  /// In all pixels, from the number of rays; 0 if it is neither one nor two.
+  int everywhere() const { return number(traced(adapted_) == traced(one_), traced(adapted_) == traced(two_)); }
 
  private:
+  static int number(bool is_one, bool is_two) { return is_one == is_two ? 0 : is_one ? 1 : 2; }
+  static uint64_t traced(const Film& film) {
+    uint64_t rays = 0;
+    for (size_t i = 0; i < film.tiles(); ++i) rays += film.tile(i).rays();
+    return rays;
+  }
+
   Film adapted_, one_, two_;
 };
 
@@ -85,19 +93,19 @@ Shape "disk"
 
 // The sky is noise where surfaces hide it from one another, else only the edge is.
 TEST(ScatteredRays, AreTwoUnderASkyWhereThisHasLessNoiseInTheSameTime) {
-  const RaysAtPixel with([](const std::string& integrator) { return under_sky(integrator, ".4", true); });
-  const RaysAtPixel without([](const std::string& integrator) { return under_sky(integrator, ".4", false); });
-  EXPECT_EQ(with(16, 16), 2);
-  EXPECT_EQ(without(16, 16), 1);
+  const ScatteredByPilot with([](const std::string& integrator) { return under_sky(integrator, ".4", true); });
+  const ScatteredByPilot without([](const std::string& integrator) { return under_sky(integrator, ".4", false); });
+  EXPECT_EQ(with.everywhere(), 2);
+  EXPECT_EQ(without.everywhere(), 1);
 }
 
 // The pixels show the bright sheet and the dark one. The light of the lamp is sampled, so that scattered rays cause
 // noise mostly on the bright one.
 TEST(ScatteredRays, AreTwoForTheMaterialsThatCauseTheNoise) {
-  const RaysAtPixel at(
+  const ScatteredByPilot found(
       [](const std::string& integrator) { return render_text(scene(integrator, ".45", ".02"), {.samples = 16}); });
-  EXPECT_EQ(at(27, 16), 2);
-  EXPECT_EQ(at(5, 16), 1);
+  EXPECT_EQ(found.at(27, 16), 2);
+  EXPECT_EQ(found.at(5, 16), 1);
 }
 
 // Otherwise the parts of an image would not fit together.
@@ -108,9 +116,9 @@ TEST(ScatteredRays, DoNotDependOnTheCrop) {
     for (int x = 8; x < 16; ++x) ASSERT_EQ(part.mean(x, y), whole.mean(x, y)) << x << ", " << y;
 }
 
-// A sheet that returns all light is as bright as the uniform sky around it, with one ray and with two.
+// A sheet that returns all light is as bright as the uniform sky, with one ray and with two.
 TEST(ScatteredRays, ConserveEnergy) {
-  const auto image = [](const std::string& integrator) {
+  const auto image = [](const std::string& integrator, bool has_sheet) {
     return render_text(fmt::format(R"(
 LookAt 0 0 3  0 0 0  0 1 0
 Camera "perspective" "float fov" 10
@@ -120,14 +128,17 @@ Integrator "path" "integer maxdepth" 100 {}
 WorldBegin
 LightSource "infinite" "spectrum L" "stdillum-D65"
 Material "diffusetransmission" "spectrum reflectance" [360 .6 2500 .6] "spectrum transmittance" [360 .4 2500 .4]
-Rotate 30 1 0 0 Shape "disk"
+{}
 )",
-                                   integrator),
+                                   integrator, has_sheet ? "Rotate 30 1 0 0 Shape \"disk\"" : ""),
                        {.samples = 16});
   };
-  const Film one = image(rays(1)), two = image(rays(2));
-  for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) EXPECT_NEAR(two.mean(x, y)[1], one.mean(x, y)[1], 1e-5 * one.mean(x, y)[1]);
+  const double sky = image("", false).mean(0, 0)[1];
+  for (const int count : {1, 2}) {
+    const Film film = image(rays(count), true);
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) EXPECT_NEAR(film.mean(x, y)[1], sky, 1e-5 * sky) << count;
+  }
 }
 
 }  // namespace
