@@ -11,12 +11,12 @@ import struct
 import subprocess
 import sys
 
-MAGIC, END = b"frond part 3\n", b"frond part end\n"
+MAGIC, END = b"frond part 4\n", b"frond part end\n"
 TILE = 16
 ITEM = struct.Struct("<4i2Q")  # x0 y0 x1 y1, first sample, end
-PIXEL_BYTES, BAND_BYTES, BLOCK_BYTES = 128, 48, 64
+PIXEL_BYTES, BAND_BYTES = 128, 48
 HITS_BYTES, MEAN_BYTES, ID_BYTES = 24, 16, 8
-SPLAT_BYTES, BAND_SPLAT_BYTES, SPLAT_BLOCK_BYTES = 64, 32, 128
+SPLAT_BYTES, BAND_SPLAT_BYTES = 64, 32
 
 
 def decompressed(frame):
@@ -104,9 +104,8 @@ def read(path):
     splatting = film["splatting"]
     reach = [axis["reach"] for axis in splatting["axes"]] if splatting else None
     features = film["means"] * MEAN_BYTES + film["ids"] * ID_BYTES
-    of_pixel = (PIXEL_BYTES + film["bands"] * BAND_BYTES + (features + HITS_BYTES if features else 0) +
-                (film["blocks"] and not splatting) * BLOCK_BYTES)
-    of_splat = SPLAT_BYTES + film["bands"] * BAND_SPLAT_BYTES + film["blocks"] * SPLAT_BLOCK_BYTES
+    of_pixel = PIXEL_BYTES + film["bands"] * BAND_BYTES + (features + HITS_BYTES if features else 0)
+    of_splat = SPLAT_BYTES + film["bands"] * BAND_SPLAT_BYTES
     tiles, at = [], 0
     for rectangle in tiles_of(splatting["sampled"] if splatting else film["crop"]):
         (items,) = struct.unpack_from("<Q", data, at)
@@ -125,6 +124,8 @@ def read(path):
             for i, position in enumerate(positions):
                 splats[position] = Splat(data[at + SPLAT_BYTES * i : at + SPLAT_BYTES * (i + 1)])
             at += len(positions) * of_splat
+        if film["halves"]:
+            at += 8 + len(positions) * SPLAT_BYTES  # the first part of the samples
         at += 8  # rays
         tiles.append({"rectangle": rectangle, "coverage": coverage, "pixels": pixels, "splats": splats})
     if at != len(data):

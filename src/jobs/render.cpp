@@ -216,7 +216,7 @@ class SceneRender {
     const std::string difference =
         wanted.header.identity.difference(found.header.identity, "this command", "\"" + path.string() + "\"");
     if (!difference.empty()) fail({}, "{}: this is another render. {}", resume, difference);
-    if (found.film.format().blocks != wanted.film.format().blocks)
+    if (found.film.format().halves != wanted.film.format().halves)
       fail({}, "{}: \"{}\" was made {} {}", resume, path.string(), task_.is_adaptive() ? "without" : "with",
            run_.args.spelled("max-rms"));
     if (found.film.settings().crop != wanted.film.settings().crop || found.film.sampled() != wanted.film.sampled())
@@ -233,8 +233,11 @@ class SceneRender {
       checkpointer.emplace(kept_->checkpoint(), checkpoint_seconds(run_.args), part, control.progress, run_.log());
       control.progress = &*checkpointer;
     }
-    statistics_ = task_.render(part, control, [&checkpointer](const PartHeader& header) {
-      if (checkpointer) checkpointer->set_header(header);
+    statistics_ = task_.render(part, control, [&checkpointer](const auto& change, const PartHeader& header) {
+      if (checkpointer)
+        checkpointer->change_part(change, header);
+      else
+        change();
     });
   }
 

@@ -81,9 +81,10 @@ void Checkpointer::write() {
   write_part(path_, header, film_);
 }
 
-void Checkpointer::set_header(const PartHeader& header) {
-  // Waits for a checkpoint in progress: it has the old header and must not contain samples of the new plan.
+void Checkpointer::change_part(const std::function<void()>& change, const PartHeader& header) {
+  // Waits for a checkpoint in progress: it has the old header and must not contain anything of the new plan.
   const std::scoped_lock lock(writing_, mutex_);
+  change();
   header_ = header;
   so_far_ = {};
 }

@@ -42,8 +42,8 @@ class Checkpointer final : public Progress {
 
   void update(double fraction, const RenderStatistics& so_far) override;
   void finish() override;
-  /// Replaces the copy of the header. Thread-safe.
-  void set_header(const PartHeader& header);
+  /// Calls `change`, which changes the part, between two checkpoints, and copies its header. Thread-safe.
+  void change_part(const std::function<void()>& change, const PartHeader& header);
   /// Writes a checkpoint immediately. Throws InputError. A periodic write that fails is reported as a warning and
   /// repeated after the interval. Thread-safe.
   void write();

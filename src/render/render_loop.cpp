@@ -83,10 +83,7 @@ class Worker {
     tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
     for (const WorkItem& piece : covered.missing(item)) {
-      if (kernel_ && format_.blocks)
-        render_shared_blocks(piece);
-      else
-        render_pixels(piece.pixels, piece.samples);
+      render_pixels(piece.pixels, piece.samples);
       tile_.cover(piece);
       statistics_.paths += piece.paths();
     }
@@ -106,25 +103,12 @@ class Worker {
       for (int x = pixels.x0; x < pixels.x1; ++x) render_pixel(x, y, samples);
   }
 
-  /// With splatting, a block of samples spans all pixels of the tile.
-  void render_shared_blocks(const WorkItem& piece) {
-    for (uint64_t s = piece.samples.begin; s < piece.samples.end; s += FilmTile::kBlock) {
-      const std::vector<FilmTile::Splat> before = tile_.splats();
-      render_pixels(piece.pixels, {s, s + FilmTile::kBlock});
-      tile_.add_block(before);
-    }
-  }
-
   void render_pixel(int x, int y, SampleRange samples) {
-    assert(!format_.blocks || (samples.begin % FilmTile::kBlock == 0 && samples.end % FilmTile::kBlock == 0));
     for (uint64_t first = samples.begin / kBundle * kBundle; first < samples.end; first += kBundle) {
       if (stop_.stop_requested()) throw Ended();
       const uint64_t begin = std::max(samples.begin, first), end = std::min(samples.end, first + kBundle);
       trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
-      const bool own_blocks = format_.blocks && !kernel_;
-      const FilmTile::Pixel before = own_blocks ? tile_.pixel(x, y) : FilmTile::Pixel{};
       add(x, y, size_t(begin - first), size_t(end - first));
-      if (own_blocks) tile_.add_block(x, y, before);
     }
     statistics_.rays += bundle_.traced;
     tile_.add_rays(bundle_.traced);
@@ -215,7 +199,6 @@ class Worker {
   static constexpr uint32_t kBundle = PathBundle::kMost;
   /// As in pbrt-v4. A denoiser takes noise of the albedo, which would be that of the colours, for structure.
   static constexpr int kAlbedoSamples = 16;
-  static_assert(kBundle == FilmTile::kBlock);
 
   const RenderJob& job_;
   const std::stop_token stop_;

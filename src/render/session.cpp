@@ -226,7 +226,7 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
   loaded.description_ = std::move(description);
   const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
   format.bands = wavelengths.bands().size();
-  format.blocks = request.adaptive;
+  format.halves = request.adaptive;
   if (const std::string_view color = format.channels.color(); format.bands > 0 && !color.empty())
     fail({}, "channel \"{}\" is a colour: with wavelengths \"{}\" the film has bands, not colours", color,
          loaded.scene_->wavelengths_name());
@@ -279,20 +279,36 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
   each.progress = &progress;
   RenderStatistics statistics;
   PartHeader& header = part.header;
-  header.adaptive = true;
-  SamplePlan plan = first_plan(part.film);
-  if (header.tile_ends.empty()) header.tile_ends = plan.tile_ends;
+  Film& film = part.film;
+  const auto change = [&](const std::function<void()>& to_next) {
+    if (request.on_change)
+      request.on_change(to_next, header);
+    else
+      to_next();
+  };
+  SamplePlan plan = first_plan(film);
+  change([&] {
+    header.adaptive = true;
+    if (header.tile_ends.empty()) header.tile_ends = plan.tile_ends;
+  });
   for (;;) {
-    if (request.planned) request.planned(header);
     progress.plan(statistics.paths, plan.predicted_paths);
-    statistics += render_plan(scene, {part.film.sampled(), {}, header.tile_ends}, part, each);
-    if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
-    const NoiseUnit unit = noise_unit(part.film, request.is_relative);
-    if (image_noise(part.film, noise_z(), unit).upper_rms() <= request.max_rms) return statistics;
-    plan = next_plan(part.film, request.max_rms, request.most_samples, unit);
+    statistics += render_plan(scene, {film.sampled(), {}, header.tile_ends}, part, each);
+    if (!has_all(film, header.tile_ends)) return statistics;  // ended early
+    if (const auto second = second_half_plan(film, request.most_samples)) {
+      plan = *second;
+    } else {
+      const NoiseUnit unit = noise_unit(film, request.is_relative);
+      if (image_noise(film, noise_z(), unit).upper_rms() <= request.max_rms) return statistics;
+      plan = next_plan(film, request.max_rms, request.most_samples, unit);
+    }
     if (plan.tile_ends == header.tile_ends) return statistics;  // all tiles have the largest number of samples
-    header.tile_ends = plan.tile_ends;
-    ++header.round;
+    change([&] {
+      for (size_t i = 0; i < film.tiles(); ++i)
+        if (double(plan.tile_ends[i]) > film.tile(i).samples_per_pixel()) film.begin_second_half(i);
+      header.tile_ends = plan.tile_ends;
+      ++header.round;
+    });
   }
 }
 

@@ -26,7 +26,7 @@ struct ImageRequest {
   std::vector<std::string> channels = {};  ///< channels in addition to those of the scene's film (channels.h)
   std::string color_space = {};  ///< linear name, if the scene states none; empty: that of the wavelength strategy
   std::map<std::string, std::string> attributes = {};  ///< attributes for the header of the image file
-  bool adaptive = false;                               ///< collect block statistics, as Session::render_to requires
+  bool adaptive = false;     ///< estimate noise from halves of the samples, as Session::render_to requires
   std::string command = {};  ///< command line without samples and pixels, for the file header and the identity
 };
 
@@ -63,8 +63,9 @@ struct NoiseRequest {
   double max_rms = 0;                ///< RMS of the noise over pixels and colours, in film units
   bool is_relative = false;          ///< in units of each colour's mean over the image instead
   uint64_t most_samples = 1u << 30;  ///< upper limit of samples per pixel
-  /// Called before each plan is rendered, with the header for checkpoints; may be empty.
-  std::function<void(const PartHeader&)> planned = {};
+  /// Called when the plan changes; may be empty. Must call its first argument, which changes the part's header and
+  /// film; no checkpoint may be written meanwhile. The second argument is the header, for the checkpoints that follow.
+  std::function<void(const std::function<void()>& change, const PartHeader&)> on_change = {};
 };
 
 /// Options of a session.

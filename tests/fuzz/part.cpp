@@ -15,7 +15,7 @@ static void append(std::string& to, uint64_t number) {
 }
 
 static std::string part_of(std::string_view header, std::string_view sums) {
-  std::string bytes = "frond part 3\n";
+  std::string bytes = "frond part 4\n";
   append(bytes, header.size());
   bytes += header;
   append(bytes, hash_bytes(header));

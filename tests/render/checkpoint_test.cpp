@@ -151,14 +151,14 @@ TEST_F(Checkpoints, OfAnAdaptiveRenderAreOfOnePlan) {
     std::mutex one_at_a_time;
     NoiseRequest watched = request;
     // One is begun, as if by the clock, just before the plan changes.
-    watched.planned = [&](const PartHeader& header) {
+    watched.on_change = [&](const auto& change, const PartHeader& header) {
       writers.emplace_back([&] {
         const std::lock_guard lock(one_at_a_time);
         checkpointer.write();
         checkpoints.push_back(read_part(path_));
       });
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      checkpointer.set_header(header);
+      checkpointer.change_part(change, header);
     };
     session_.render_to(scene, watched, part, {.progress = &checkpointer});
   }
@@ -168,6 +168,7 @@ TEST_F(Checkpoints, OfAnAdaptiveRenderAreOfOnePlan) {
       for (const WorkItem& item : from.film.tile(t).coverage().items()) {
         ASSERT_FALSE(from.header.tile_ends.empty());
         ASSERT_LE(item.samples.end, from.header.tile_ends[t]) << "round " << from.header.round;
+        ASSERT_TRUE(from.header.round == 0 || from.film.tile(t).samples_in_first_half() > 0);
       }
     if (&from != &checkpoints[checkpoints.size() / 2]) continue;
     session_.render_to(scene, request, from);

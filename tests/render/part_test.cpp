@@ -278,8 +278,8 @@ TEST_F(Parts, WhatIsNoneOrOfAnotherVersionIsRefused) {
     EXPECT_THAT(reading(text), HasSubstr("is not a part file"));
   const auto bytes = encode_part(whole.header, whole.film);
   std::string other(bytes.begin(), bytes.end());
-  other[other.find('3')] = '2';
-  EXPECT_THAT(reading(other), AllOf(HasSubstr("another version"), HasSubstr("version 3")));
+  other[other.find('4')] = '3';
+  EXPECT_THAT(reading(other), AllOf(HasSubstr("another version"), HasSubstr("version 4")));
   EXPECT_THAT(error_of([this] { read_part(path("none.part")); }), HasSubstr("none.part"));
   EXPECT_THAT(error_of([this] { merge_parts({path("scene.pbrt")}); }), HasSubstr("not a part file"));
 }

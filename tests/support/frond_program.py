@@ -33,7 +33,7 @@ THREADS = 2
 def part_header(path):
     """What a part says before its sums (docs/many_machines.md)."""
     data = pathlib.Path(path).read_bytes()
-    magic = b"frond part 3\n"
+    magic = b"frond part 4\n"
     assert data.startswith(magic), f"{path} is no part"
     (size,) = struct.unpack_from("<Q", data, len(magic))
     return json.loads(data[len(magic) + 8 : len(magic) + 8 + size])

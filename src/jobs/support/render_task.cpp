@@ -171,11 +171,11 @@ RenderPart RenderTask::empty_part() const {
 
 /// With --max-rms, --spp is the largest number of samples of a pixel.
 RenderStatistics RenderTask::render(RenderPart& part, const RenderControl& control,
-                                    const std::function<void(const PartHeader&)>& plan_changed) const {
+                                    const decltype(NoiseRequest::on_change)& on_change) const {
   Session& session = run_.session();
   if (!is_adaptive()) return session.render(*scene_, samples_, part, control);
   NoiseRequest request{
-      .max_rms = run_.args.real("max-rms"), .is_relative = run_.args.is_relative("max-rms"), .planned = plan_changed};
+      .max_rms = run_.args.real("max-rms"), .is_relative = run_.args.is_relative("max-rms"), .on_change = on_change};
   if (run_.args.given("spp")) request.most_samples = samples_.count();
   return session.render_to(*scene_, request, part, control);
 }

@@ -40,9 +40,9 @@ class RenderTask {
   bool is_adaptive() const { return is_adaptive_; }
   /// Returns a part without samples.
   RenderPart empty_part() const;
-  /// Renders the requested samples that the part lacks. `plan_changed` may be empty.
+  /// Renders the requested samples that the part lacks. `on_change` is that of NoiseRequest.
   RenderStatistics render(RenderPart& part, const RenderControl& control,
-                          const std::function<void(const PartHeader&)>& plan_changed = {}) const;
+                          const decltype(NoiseRequest::on_change)& on_change = {}) const;
 
  private:
   void apply_arguments();

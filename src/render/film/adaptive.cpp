@@ -8,8 +8,6 @@
 namespace frond {
 namespace {
 
-constexpr uint64_t kBlock = FilmTile::kBlock;
-
 /// Variance of colours in the given units, averaged over them.
 double averaged(const Triple& variance, const NoiseUnit& unit) {
   double sum = 0;
@@ -19,40 +17,55 @@ double averaged(const Triple& variance, const NoiseUnit& unit) {
 
 double pixels_of(const Crop& c) { return double(c.width()) * double(c.height()); }
 
+/// Samples per pixel of a tile.
+uint64_t samples_of(const FilmTile& tile) {
+  const Crop& c = tile.pixels();
+  return tile.pixel(c.x0, c.y0).samples;
+}
+
+uint64_t doubled(uint64_t samples, uint64_t most) { return std::max(samples, std::min(2 * samples, most)); }
+
+/// The variance of a pixel falls with this power of the number of samples (measured, with the sampler "lattice").
+constexpr double kPower = 1.2;
+
 /// Statistics of a tile for the allocation of samples.
 struct TileNoise {
-  double pixels, samples;
-  double variance;  ///< variance of one sample, mean over the tile's pixels
-  double cost;      ///< rays per path, plus one for the cost of the path itself
+  double pixels = 0, samples = 0;
+  double cost = 0;                ///< rays per path, plus one for the cost of the path itself
+  double inside = 0;              ///< number of its pixels in the image
+  double noise = 0, between = 0;  ///< sums over these: Film::half_variance and Film::variance
 };
 
 TileNoise noise_of(const Film& film, size_t i, const NoiseUnit& unit) {
   const FilmTile& tile = film.tile(i);
-  const Crop& c = tile.pixels();
-  double noise = 0;
-  if (film.format().splatting) {
-    const Crop reached = intersection(tile.reached(), film.settings().crop);
-    for (int y = reached.y0; y < reached.y1; ++y)
-      for (int x = reached.x0; x < reached.x1; ++x) noise += averaged(film.block_variance_by(i, x, y), unit);
-  } else {
-    for (int y = c.y0; y < c.y1; ++y)
-      for (int x = c.x0; x < c.x1; ++x) noise += averaged(film.block_variance(x, y), unit);
-  }
-  const double pixels = pixels_of(c), samples = double(tile.pixel(c.x0, c.y0).samples);
-  return {pixels, samples, noise / pixels * samples, double(tile.rays()) / (pixels * samples) + 1};
+  const double pixels = pixels_of(tile.pixels()), samples = double(samples_of(tile));
+  TileNoise t{pixels, samples, double(tile.rays()) / (pixels * samples) + 1};
+  const Crop inside = intersection(tile.pixels(), film.settings().crop);
+  for (int y = inside.y0; y < inside.y1; ++y)
+    for (int x = inside.x0; x < inside.x1; ++x, ++t.inside) {
+      t.noise += averaged(film.half_variance(x, y), unit);
+      t.between += averaged(film.variance(x, y), unit);
+    }
+  return t;
 }
 
-/// Average of each tile's variance and of the mean variance of the 3 x 3 tiles around it.
-std::vector<double> smoothed(const std::vector<TileNoise>& tiles, size_t columns) {
+/// Variance of a pixel's value in each tile, mean over its pixels. The variance between samples has many degrees of
+/// freedom but ignores how evenly they are distributed. The ratio of both variances, from the 3 x 3 tiles around a
+/// tile, corrects that.
+std::vector<double> variances_of(const std::vector<TileNoise>& tiles, size_t columns) {
   std::vector<double> result;
   const auto rows = tiles.size() / columns;
   for (size_t row = 0; row < rows; ++row)
     for (size_t column = 0; column < columns; ++column) {
-      double sum = 0, count = 0;
+      TileNoise sum{};
       for (size_t r = row - std::min<size_t>(row, 1); r < std::min(row + 2, rows); ++r)
-        for (size_t c = column - std::min<size_t>(column, 1); c < std::min(column + 2, columns); ++c)
-          sum += tiles[r * columns + c].variance, ++count;
-      result.push_back((tiles[row * columns + column].variance + sum / count) / 2);
+        for (size_t c = column - std::min<size_t>(column, 1); c < std::min(column + 2, columns); ++c) {
+          const TileNoise& t = tiles[r * columns + c];
+          sum.noise += t.noise, sum.between += t.between, sum.inside += t.inside;
+        }
+      const TileNoise& own = tiles[row * columns + column];
+      const TileNoise& source = own.inside > 0 ? own : sum;  // a tile next to the image
+      result.push_back(sum.between > 0 ? source.between / source.inside * sum.noise / sum.between : 0);
     }
   return result;
 }
@@ -81,7 +94,7 @@ NoiseEstimate image_noise(const Film& film, double z, const NoiseUnit& unit) {
   double sum = 0, squares = 0;
   for (int y = c.y0; y < c.y1; ++y)
     for (int x = c.x0; x < c.x1; ++x) {
-      const double noise = averaged(film.block_variance(x, y), unit);
+      const double noise = averaged(film.half_variance(x, y), unit);
       sum += noise, squares += noise * noise;
     }
   const double pixels = pixels_of(c), alike = film.format().splatting ? film.format().splatting->correlated_pixels : 1;
@@ -91,25 +104,42 @@ NoiseEstimate image_noise(const Film& film, double z, const NoiseUnit& unit) {
 double noise_z() { return normal_upper_quantile(sidak_level(1 - kNoiseConfidence, kNoiseLooks)); }
 
 SamplePlan first_plan(const Film& film) {
-  return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive), uint64_t(pixels_of(film.sampled())) * kLeastAdaptive};
+  return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive / 2),
+          uint64_t(pixels_of(film.sampled())) * kLeastAdaptive};
 }
 
-SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples, const NoiseUnit& unit) {
-  const uint64_t most = most_samples / kBlock * kBlock;
+std::optional<SamplePlan> second_half_plan(const Film& film, uint64_t most) {
+  SamplePlan plan;
+  bool has_more = false;
+  for (size_t i = 0; i < film.tiles(); ++i) {
+    const FilmTile& tile = film.tile(i);
+    const uint64_t samples = samples_of(tile), end = tile.has_second_half() ? samples : doubled(samples, most);
+    plan.tile_ends.push_back(end);
+    plan.predicted_paths += end * uint64_t(pixels_of(tile.pixels()));
+    has_more |= end > samples;
+  }
+  return has_more ? std::optional(std::move(plan)) : std::nullopt;
+}
+
+SamplePlan next_plan(const Film& film, double max_rms, uint64_t most, const NoiseUnit& unit) {
   std::vector<TileNoise> tiles;
   for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i, unit));
-  const std::vector<double> variance = smoothed(tiles, film.columns());
+  const std::vector<double> variance = variances_of(tiles, film.columns());
   // The target applies to the upper bound: the goal for the estimate is lower by their present ratio.
   const NoiseEstimate now = image_noise(film, noise_z(), unit);
   const double sharpness = now.mean_square > 0 ? now.mean_square / now.upper : 1;
   const double goal = max_rms * max_rms * sharpness * pixels_of(film.settings().crop);
+  // `scale` is 1 over the least reduction of the image's noise per ray for which samples are doubled.
   const auto samples_at = [&](size_t i, double scale) {
-    return std::clamp(scale * std::sqrt(variance[i] / tiles[i].cost), tiles[i].samples,
-                      std::max(double(most), tiles[i].samples));
+    const TileNoise& t = tiles[i];
+    const double worth = scale * variance[i] / (t.samples * t.cost);
+    const double doublings = worth > 1 ? std::round(std::log2(worth) / (1 + kPower)) : 0;
+    return std::min(t.samples * std::exp2(doublings), std::max(double(most), t.samples));
   };
   const auto noise_at = [&](double scale) {
     double noise = 0;
-    for (size_t i = 0; i < tiles.size(); ++i) noise += tiles[i].pixels * variance[i] / samples_at(i, scale);
+    for (size_t i = 0; i < tiles.size(); ++i)
+      noise += tiles[i].inside * variance[i] * std::pow(tiles[i].samples / samples_at(i, scale), kPower);
     return noise;
   };
   const auto plan_for = [&](double noise) {
@@ -124,8 +154,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples, co
     for (size_t i = 0; i < tiles.size(); ++i) {
       const double wanted = samples_at(i, high);
       plan.predicted_paths += uint64_t(wanted * tiles[i].pixels);
-      const double end = std::min(wanted, 2 * tiles[i].samples);
-      plan.tile_ends.push_back(uint64_t(std::ceil(end / double(kBlock))) * kBlock);
+      plan.tile_ends.push_back(uint64_t(std::min(wanted, 2 * tiles[i].samples)));
     }
     return plan;
   };

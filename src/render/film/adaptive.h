@@ -21,34 +21,37 @@ struct NoiseEstimate {
   double upper_rms() const;
 };
 
-/// Noise of a film with block statistics. The upper bound is `z` standard errors above the estimate. The relative
-/// standard error of each pixel's variance is taken as 1. With splatting, the errors of Splatting::correlated_pixels
-/// pixels are taken as fully correlated.
+/// Noise of a film with `halves` (Film::half_variance). The upper bound is `z` standard errors above the estimate. A
+/// pixel's estimate has one degree of freedom: its variance is at most its mean square. With splatting, the errors of
+/// Splatting::correlated_pixels pixels are taken as fully correlated.
 NoiseEstimate image_noise(const Film& film, double z, const NoiseUnit& unit = kFilmUnit);
 
 /// Confidence that the noise of a finished adaptive render is at most the target, over all of its noise tests.
 inline constexpr double kNoiseConfidence = 0.95;
-/// Largest number of noise tests: at most one for each doubling of the samples, from 2 blocks to 2^30 samples.
+/// Largest number of noise tests: one for each doubling of the samples, from 2^5 to 2^30.
 inline constexpr size_t kNoiseLooks = 26;
 /// Number of standard errors for one noise test (Sidak's correction for kNoiseLooks tests).
 double noise_z();
 
 /// Next step of an adaptive render.
 struct SamplePlan {
-  std::vector<uint64_t> tile_ends;  ///< samples per pixel of each tile, whole blocks
+  std::vector<uint64_t> tile_ends;  ///< samples per pixel of each tile
   uint64_t predicted_paths = 0;     ///< number of paths of the whole render until it meets the target
 };
 
-/// Number of samples of the first plan: two blocks, the fewest from which noise can be estimated.
-inline constexpr uint64_t kLeastAdaptive = 2 * FilmTile::kBlock;
-/// First plan: kLeastAdaptive samples in each pixel.
+/// Fewest samples of a pixel, from which noise is first estimated.
+inline constexpr uint64_t kLeastAdaptive = 32;
+/// First plan: half of kLeastAdaptive samples in each pixel.
 SamplePlan first_plan(const Film& film);
+/// Plan that doubles the samples of the tiles without a second half, to `most` at most; empty if there are none.
+std::optional<SamplePlan> second_half_plan(const Film& film, uint64_t most);
 
-/// Plan that reduces the noise of the image to `max_rms`, in `unit`, at the lowest cost. The number of samples n_t of
-/// tile t is proportional to sqrt(variance / rays), so that one more ray reduces the noise equally in all tiles (Neyman
-/// allocation). It is at most twice the present number, so that the next noise test sees the effect, and at most `most`
-/// rounded down to whole blocks. The variance of a tile is the average of its own estimate and of the mean over the 3 x
-/// 3 tiles around it.
+/// Plan that reduces the noise of the image to `max_rms`, in `unit`, at the lowest cost: one more ray is to reduce the
+/// noise equally in all tiles (Neyman allocation; for independent samples, their number is then proportional to
+/// sqrt(variance / rays)). Only whole doublings are planned, because the halves of 2^k samples of a low-discrepancy
+/// sequence are the most evenly distributed ones. (If a number is off by a factor f between 2^-1/2 and 2^1/2, the noise
+/// of independent samples is (f + 1 / f) / 2 times that of the optimum, 1.02 on average.) There is one doubling at
+/// most, so that the next noise test sees its effect, and it ends at `most`.
 ///
 /// The number of samples of a tile depends on its samples. A pixel's mean is therefore biased, by at most the
 /// covariance of its noise with its share of the tile's samples (measured in docs/rendering.md).

@@ -106,7 +106,7 @@ Film::Gathered Film::gathered(int x, int y) const {
   for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
     const double samples = tile.samples_per_pixel();
     if (samples == 0) return;
-    const FilmTile::Splat& splat = tile.splat(x, y);
+    const FilmTile::WeightedSums& splat = tile.splat(x, y);
     for (size_t c = 0; c < 3; ++c) all.sum[c] += splat.sum[c].value() / samples;
     all.weight += double(splat.weight) / FilmTile::kWeightsOfOne / samples;
   });
@@ -198,44 +198,53 @@ Triple Film::variance(int x, int y) const {
   return v;
 }
 
-Triple Film::block_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const {
-  const double samples = tile.samples_per_pixel();
-  if (samples == 0 || all.weight <= 0) return {};
-  const FilmTile::SplatBlocks& b = tile.splat_blocks(x, y);
-  const FilmTile::Splat& splat = tile.splat(x, y);
-  constexpr auto kBlock = double(FilmTile::kBlock);
+Film::Gathered Film::own(int x, int y) const {
+  const FilmTile::Pixel& p = pixel(x, y);
+  const double samples = tiles_[tile_at(x, y)].samples_per_pixel();
+  if (samples == 0) return {};
+  Gathered all{{}, double(p.weight) / FilmTile::kWeightsOfOne / samples};
+  for (size_t c = 0; c < 3; ++c) all.sum[c] = p.sum[c].value() / samples;
+  return all;
+}
+
+/// With D = sum(w (L - m)) / samples, where m is the value of the pixel, the value changed by the difference of D
+/// between all samples and the first ones, over the weight. (To first order: the pixel is a ratio of sums.)
+Triple Film::half_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const {
+  const double samples = tile.samples_per_pixel(), first_samples = tile.samples_in_first_half();
+  if (!tile.has_second_half() || all.weight <= 0) return {};
+  const FilmTile::WeightedSums whole = tile.sums(x, y), first = tile.first_half(x, y);
   Triple v{};
   for (size_t c = 0; c < 3; ++c) {
     const double mean = all.sum[c] / all.weight;
-    const double rest = (splat.sum[c].value() - mean * double(splat.weight) / FilmTile::kWeightsOfOne) / kBlock;
-    const double square = b.square[c].value() - 2 * mean * b.product[c].value() + mean * mean * b.weight_square.value();
-    v[c] = unit_ * unit_ * variance_of_mean(rest, square, double(b.blocks), all.weight * samples / kBlock);
+    const auto deviation = [&](const FilmTile::WeightedSums& s, double n) {
+      return (s.sum[c].value() - mean * double(s.weight) / FilmTile::kWeightsOfOne) / n;
+    };
+    const double change = unit_ * (deviation(whole, samples) - deviation(first, first_samples)) / all.weight;
+    v[c] = change * change / (samples / first_samples - 1);
   }
   return v;
 }
 
-Triple Film::block_variance_by(size_t tile, int x, int y) const {
-  return block_variance_by(tiles_[tile], x, y, gathered(x, y));
-}
-
-Triple Film::block_variance(int x, int y) const {
-  if (format_.splatting) {
-    const Gathered all = gathered(x, y);
-    Triple v{};
-    for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
-      const Triple by_tile = block_variance_by(tile, x, y, all);
-      for (size_t c = 0; c < 3; ++c) v[c] += by_tile[c];
-    });
-    return v;
-  }
-  const FilmTile::Pixel& p = pixel(x, y);
-  const FilmTile::BlockSums& b = tiles_[tile_at(x, y)].blocks(x, y);
-  const double weight = double(p.weight) / FilmTile::kWeightsOfOne / double(FilmTile::kBlock);
+Triple Film::half_variance(int x, int y) const {
+  bool is_known = true;
   Triple v{};
-  for (size_t c = 0; c < 3; ++c)
-    v[c] = unit_ * unit_ *
-           variance_of_mean(p.sum[c].value() / double(FilmTile::kBlock), b.square[c].value(), double(b.blocks), weight);
-  return v;
+  const Gathered all = format_.splatting ? gathered(x, y) : own(x, y);
+  const auto add = [&](const FilmTile& tile) {
+    if (tile.samples_per_pixel() == 0) return;
+    is_known &= tile.has_second_half();
+    const Triple by_tile = half_variance_by(tile, x, y, all);
+    for (size_t c = 0; c < 3; ++c) v[c] += by_tile[c];
+  };
+  if (format_.splatting)
+    for_each_reaching_tile(x, y, add);
+  else
+    add(tiles_[tile_at(x, y)]);
+  return is_known ? v : variance(x, y);
+}
+
+void Film::begin_second_half(size_t i) {
+  const std::lock_guard lock((*locks_)[i % kLocks]);
+  tiles_[i].begin_second_half();
 }
 
 double Film::own_weight(int x, int y, size_t band) const {
@@ -317,13 +326,13 @@ void check_memory(const FilmFormat& format, size_t films, const Location& where,
                        double(format.bands) * (sizeof(FilmTile::BandSums) + kBandBytes) +
                        double(format.channels.means()) * (sizeof(ExactSum<40>) + sizeof(float)) +
                        double(format.channels.ids()) * (sizeof(double) + sizeof(float)) + sizeof(FilmTile::Hits) +
-                       (format.blocks && !format.splatting ? sizeof(FilmTile::BlockSums) : 0);
+                       (format.halves && !format.splatting ? sizeof(FilmTile::WeightedSums) : 0);
   double bytes = double(crop.width()) * double(crop.height()) * double(films) * pixel;
   if (const auto& s = format.splatting)
-    bytes += double(crop.width()) * double(crop.height()) * double(films) * (1 + 2.0 * s->reach_x() / Film::kTile) *
-             (1 + 2.0 * s->reach_y() / Film::kTile) *
-             (sizeof(FilmTile::Splat) + double(format.bands) * sizeof(FilmTile::BandSplat) +
-              (format.blocks ? sizeof(FilmTile::SplatBlocks) : 0));
+    bytes +=
+        double(crop.width()) * double(crop.height()) * double(films) * (1 + 2.0 * s->reach_x() / Film::kTile) *
+        (1 + 2.0 * s->reach_y() / Film::kTile) *
+        ((format.halves ? 2 : 1) * sizeof(FilmTile::WeightedSums) + double(format.bands) * sizeof(FilmTile::BandSplat));
   const double memory = machine_memory();
   if (bytes <= memory) return;
   fail(where, "{} {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: {}",

@@ -56,11 +56,14 @@ class Film {
   /// it ignores their negative correlation. With splatting it is computed from the variances of the samples in each
   /// pixel and their mean weights; the position of a sample in its pixel is taken as independent of its value.
   Triple variance(int x, int y) const;
-  /// Estimated variance of `mean` from the differences between blocks of samples, for a film with block statistics. It
-  /// accounts for the negative correlation of low-discrepancy samples in part.
-  Triple block_variance(int x, int y) const;
-  /// With splatting: contribution of the samples of one tile to `block_variance`.
-  Triple block_variance_by(size_t tile, int x, int y) const;
+  /// Estimated variance of `mean` from the difference between the first part of the samples and all of them, for a film
+  /// with `halves`. For n independent samples, the first h of which have the mean m_h, (m_n - m_h)^2 / (n / h - 1) has
+  /// the expectation of the variance of m_n. A low-discrepancy sequence whose variance falls as n^-a has 2^a - 1 times
+  /// its variance for n = 2 h: more, for a > 1. It has one degree of freedom. Falls back on `variance` if the samples
+  /// that reach the pixel have no second part.
+  Triple half_variance(int x, int y) const;
+  /// Makes the samples of tile `i` the first part. Thread-safe.
+  void begin_second_half(size_t i);
   /// Mean of the samples that carry a band, its estimated variance, 0 for fewer than two samples, and their number.
   struct BandMean {
     double mean = 0, variance = 0;
@@ -108,7 +111,9 @@ class Film {
   double enough_weight(int x, int y, double weight, const Count& count) const;
   template <class Moments>
   double splatted_variance(int x, int y, double mean, double weight, const Moments& moments) const;
-  Triple block_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const;
+  Gathered own(int x, int y) const;
+  /// Contribution of the samples of one tile to `half_variance`; 0 if they have no second part.
+  Triple half_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const;
 
   FilmFormat format_;
   int first_column_, first_row_, columns_;

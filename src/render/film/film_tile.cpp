@@ -113,13 +113,7 @@ FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& other) {
   return *this;
 }
 
-FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& other) {
-  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c];
-  blocks += other.blocks;
-  return *this;
-}
-
-FilmTile::Splat& FilmTile::Splat::operator+=(const Splat& other) {
+FilmTile::WeightedSums& FilmTile::WeightedSums::operator+=(const WeightedSums& other) {
   for (size_t c = 0; c < 3; ++c) sum[c] += other.sum[c];
   weight += other.weight;
   return *this;
@@ -127,12 +121,6 @@ FilmTile::Splat& FilmTile::Splat::operator+=(const Splat& other) {
 
 FilmTile::BandSplat& FilmTile::BandSplat::operator+=(const BandSplat& other) {
   sum += other.sum, weight += other.weight;
-  return *this;
-}
-
-FilmTile::SplatBlocks& FilmTile::SplatBlocks::operator+=(const SplatBlocks& other) {
-  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c], product[c] += other.product[c];
-  weight_square += other.weight_square, blocks += other.blocks;
   return *this;
 }
 
@@ -150,7 +138,7 @@ FilmTile::FilmTile(const FilmFormat& format, const Crop& pixels)
     : band_count_(format.bands),
       mean_count_(format.channels.means()),
       id_count_(format.channels.ids()),
-      has_blocks_(format.blocks),
+      has_halves_(format.halves),
       width_(format.settings.width),
       height_(format.settings.height) {
   if (const auto& s = format.splatting) reach_x_ = s->reach_x(), reach_y_ = s->reach_y();
@@ -165,14 +153,14 @@ void FilmTile::clear(const Crop& pixels) {
   hits_.assign(mean_count_ + id_count_ > 0 ? count : 0, {});
   mean_sums_.assign(count * mean_count_, {});
   ids_.assign(count * id_count_, 0);
-  blocks_.assign(has_blocks_ && !shares_samples() ? count : 0, {});
   reached_ = {};
   if (shares_samples() && count > 0)
     reached_ = intersection(widened(pixels, reach_x_, reach_y_), {0, 0, width_, height_});
   const size_t reached = size_t(reached_.width()) * size_t(reached_.height());
   splats_.assign(reached, {});
   band_splats_.assign(reached * band_count_, {});
-  splat_blocks_.assign(has_blocks_ ? reached : 0, {});
+  paths_in_halves_ = 0;
+  halves_.assign(has_halves_ ? (shares_samples() ? reached : count) : 0, {});
   rays_ = 0;
   coverage_ = {};
 }
@@ -256,7 +244,7 @@ void FilmTile::add_splats(int x, int y, const SplatKernel& kernel, std::span<Spl
 
 void FilmTile::add_splats(int x, int y, const SplatSums& sums) {
   for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
-    Splat& splat = splats_[at];
+    WeightedSums& splat = splats_[at];
     for (size_t c = 0; c < 3; ++c) splat.sum[c].add_multiple(sums.sum(column, row, c), sums.shift());
     splat.weight += sums.weight(column, row);
   });
@@ -298,34 +286,31 @@ void FilmTile::add_features(size_t at, const FilmTile& other, size_t from) {
   }
 }
 
-void FilmTile::add_block(int x, int y, const Pixel& before) {
-  BlockSums& block = blocks_[index(x, y)];
-  const Pixel& after = pixel(x, y);
-  for (size_t c = 0; c < 3; ++c) {
-    const double mean = (after.sum[c].value() - before.sum[c].value()) / double(kBlock);
-    block.square[c].add(mean * mean);
-  }
-  ++block.blocks;
-}
-
-void FilmTile::add_block(const std::vector<Splat>& before) {
-  for (size_t i = 0; i < splats_.size(); ++i) {
-    SplatBlocks& block = splat_blocks_[i];
-    const double c = double(splats_[i].weight - before[i].weight) / (kWeightsOfOne * double(kBlock));
-    for (size_t k = 0; k < 3; ++k) {
-      const double b = (splats_[i].sum[k].value() - before[i].sum[k].value()) / double(kBlock);
-      block.square[k].add(held(b * b));
-      block.product[k].add(held(b * c));
-    }
-    block.weight_square.add(c * c);
-    ++block.blocks;
-  }
-}
-
 double FilmTile::samples_per_pixel() const {
+  return double(paths()) / (double(crop_.width()) * double(crop_.height()));
+}
+
+double FilmTile::samples_in_first_half() const {
+  return double(paths_in_halves_) / (double(crop_.width()) * double(crop_.height()));
+}
+
+uint64_t FilmTile::paths() const {
   uint64_t samples = 0;
   for (const WorkItem& item : coverage_.items()) samples += item.paths();
-  return double(samples) / (double(crop_.width()) * double(crop_.height()));
+  return samples;
+}
+
+FilmTile::WeightedSums FilmTile::sums(int x, int y) const {
+  return shares_samples() ? splat(x, y) : WeightedSums{pixel(x, y).sum, pixel(x, y).weight};
+}
+
+void FilmTile::begin_second_half() {
+  assert(has_halves_);
+  paths_in_halves_ = paths();
+  const Crop& all = shares_samples() ? reached_ : crop_;
+  size_t at = 0;
+  for (int y = all.y0; y < all.y1; ++y)
+    for (int x = all.x0; x < all.x1; ++x) halves_[at++] = sums(x, y);
 }
 
 void FilmTile::merge_splats(const FilmTile& other) {
@@ -335,7 +320,7 @@ void FilmTile::merge_splats(const FilmTile& other) {
     const size_t to = reached_index(c.x0, y), from = other.reached_index(c.x0, y);
     add_all(splats_, to, other.splats_, from, width);
     add_all(band_splats_, to * band_count_, other.band_splats_, from * band_count_, width * band_count_);
-    if (has_blocks_) add_all(splat_blocks_, to, other.splat_blocks_, from, width);
+    if (has_halves_) add_all(halves_, to, other.halves_, from, width);
   }
 }
 
@@ -351,9 +336,10 @@ bool FilmTile::merge(const FilmTile& other) {
     add_all(pixels_, to, other.pixels_, from, width);
     add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
     for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
-    if (!blocks_.empty()) add_all(blocks_, to, other.blocks_, from, width);
+    if (has_halves_ && !shares_samples()) add_all(halves_, to, other.halves_, from, width);
   }
   if (shares_samples()) merge_splats(other);
+  paths_in_halves_ += other.paths_in_halves_;
   rays_ += other.rays_;
   return true;
 }

@@ -20,7 +20,7 @@ struct FilmFormat {
   FilmSettings settings;
   size_t bands = 0;           ///< number of spectral bands; 0: the film has three colours
   ChannelList channels = {};  ///< additional channels, from the first hits of camera rays
-  bool blocks = false;        ///< the film has block statistics: only whole blocks of samples can be rendered
+  bool halves = false;        ///< the film has sums over the first part of its samples, from which noise is estimated
   /// Sums are in units of 2^exponent, which is close to the image's typical value. In these units, values of samples
   /// can range from 10^-13 to 10^8. Brighter values are clamped and counted; in sums of squares, values below 10^-6 are
   /// lost.
@@ -75,41 +75,19 @@ class FilmTile {
     friend bool operator==(const Hits&, const Hits&) = default;
   };
 
-  /// Number of samples in a block. The noise of a pixel is estimated from the differences between blocks, as the
-  /// low-discrepancy samples within a block are not independent.
-  static constexpr uint64_t kBlock = 16;
-  /// Sums over the blocks of a pixel.
-  struct BlockSums {
-    std::array<ExactSum<40>, 3> square{};  ///< sums of the squares of a block's mean colour
-    uint64_t blocks = 0, unused = 0;
-    BlockSums& operator+=(const BlockSums& other);
-    friend bool operator==(const BlockSums&, const BlockSums&) = default;
-  };
-
-  /// With splatting: sums over the tile's samples that reach a pixel.
-  struct Splat {
+  /// Weighted sums over samples. With splatting, over the tile's samples that reach a pixel.
+  struct WeightedSums {
     std::array<ExactSum<60>, 3> sum{};  ///< sums of colours times weights
     int64_t weight = 0, unused = 0;     ///< sum of weights, in units of 2^-30
-    Splat& operator+=(const Splat& other);
-    friend bool operator==(const Splat&, const Splat&) = default;
+    WeightedSums& operator+=(const WeightedSums& other);
+    friend bool operator==(const WeightedSums&, const WeightedSums&) = default;
   };
-  /// Like Splat, over the samples that carry a band.
+  /// With splatting: like WeightedSums, over the samples that carry a band.
   struct BandSplat {
     ExactSum<60> sum;
     int64_t weight = 0, unused = 0;
     BandSplat& operator+=(const BandSplat& other);
     friend bool operator==(const BandSplat&, const BandSplat&) = default;
-  };
-  /// With splatting: sums over blocks, each of kBlock samples of every pixel of the tile. For a pixel that the block
-  /// reaches, b is its sum of colours times weights and c its sum of weights, both divided by kBlock. The noise of the
-  /// pixel follows from the differences of b - m c between blocks, where m is the pixel's value.
-  struct SplatBlocks {
-    std::array<ExactSum<40>, 3> square{};   ///< sums of b^2
-    std::array<ExactSum<40>, 3> product{};  ///< sums of b c
-    ExactSum<40> weight_square{};           ///< sum of c^2
-    uint64_t blocks = 0, unused = 0;
-    SplatBlocks& operator+=(const SplatBlocks& other);
-    friend bool operator==(const SplatBlocks&, const SplatBlocks&) = default;
   };
 
   /// Fixed-point representation of a weight of 1.
@@ -133,11 +111,8 @@ class FilmTile {
            const SplatKernel* kernel = nullptr);
   /// Adds the values of additional channels for one sample.
   void add(int x, int y, const Features& features);
-  /// Adds the last kBlock samples of a pixel as a block; `before` holds the pixel's sums before these samples.
-  void add_block(int x, int y, const Pixel& before);
-  /// With splatting: adds the last kBlock samples of each of the tile's pixels as a block; `before` holds the tile's
-  /// `splats` before these samples.
-  void add_block(const std::vector<Splat>& before);
+  /// Makes the present sums those of the first part, for a film with `halves`; the next samples are the second part.
+  void begin_second_half();
   /// Adds to the number of rays.
   void add_rays(uint64_t rays) { rays_ += rays; }
   /// Adds the sums of another tile, whose pixels must lie in this one. Returns false, without a change, if the tiles
@@ -154,17 +129,23 @@ class FilmTile {
   /// Sum of value `i` of the channels of kind mean, and value `i` of those of kind nearest.
   const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
-  const BlockSums& blocks(int x, int y) const { return blocks_[index(x, y)]; }
   /// Pixels of the image that the tile's samples reach; empty without splatting.
   const Crop& reached() const { return reached_; }
-  const Splat& splat(int x, int y) const { return splats_[reached_index(x, y)]; }
-  const std::vector<Splat>& splats() const { return splats_; }
+  const WeightedSums& splat(int x, int y) const { return splats_[reached_index(x, y)]; }
   const BandSplat& band_splat(int x, int y, size_t band) const {
     return band_splats_[reached_index(x, y) * band_count_ + band];
   }
-  const SplatBlocks& splat_blocks(int x, int y) const { return splat_blocks_[reached_index(x, y)]; }
-  /// Number of samples, averaged over its pixels.
+  /// Sums over the samples that reach a pixel; without splatting, over those of the pixel. For a film with `halves`,
+  /// the same over the first part of the samples.
+  WeightedSums sums(int x, int y) const;
+  const WeightedSums& first_half(int x, int y) const {
+    return halves_[shares_samples() ? reached_index(x, y) : index(x, y)];
+  }
+  /// Number of samples, averaged over its pixels, and of those in the first part.
   double samples_per_pixel() const;
+  double samples_in_first_half() const;
+  /// True if there are samples in the first part and beyond it.
+  bool has_second_half() const { return paths_in_halves_ > 0 && paths() > paths_in_halves_; }
   /// Number of rays traced for its samples.
   uint64_t rays() const { return rays_; }
   friend bool operator==(const FilmTile&, const FilmTile&) = default;
@@ -173,6 +154,7 @@ class FilmTile {
   friend class PartFile;  // reads and writes the arrays
 
   bool shares_samples() const { return reach_x_ >= 0; }
+  uint64_t paths() const;
   void add_features(size_t at, const FilmTile& other, size_t from);
   struct SplatSample;
   void add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples);
@@ -190,19 +172,19 @@ class FilmTile {
 
   Crop crop_, reached_{};
   size_t band_count_, mean_count_, id_count_;
-  bool has_blocks_;
+  bool has_halves_;
   int reach_x_ = -1, reach_y_ = -1;  ///< SplatAxis::reach; -1 without splatting
   int width_, height_;               ///< full resolution of the image
   uint64_t rays_ = 0;
   std::vector<Pixel> pixels_;
-  std::vector<BandSums> bands_;            ///< [pixel][band]
-  std::vector<Hits> hits_;                 ///< [pixel], if there are means or ids
-  std::vector<ExactSum<40>> mean_sums_;    ///< [pixel][value]
-  std::vector<double> ids_;                ///< [pixel][value]
-  std::vector<BlockSums> blocks_;          ///< [pixel]
-  std::vector<Splat> splats_;              ///< [pixel in reached_]
-  std::vector<BandSplat> band_splats_;     ///< [pixel in reached_][band]
-  std::vector<SplatBlocks> splat_blocks_;  ///< [pixel in reached_]
+  std::vector<BandSums> bands_;          ///< [pixel][band]
+  std::vector<Hits> hits_;               ///< [pixel], if there are means or ids
+  std::vector<ExactSum<40>> mean_sums_;  ///< [pixel][value]
+  std::vector<double> ids_;              ///< [pixel][value]
+  std::vector<WeightedSums> splats_;     ///< [pixel in reached_]
+  std::vector<BandSplat> band_splats_;   ///< [pixel in reached_][band]
+  uint64_t paths_in_halves_ = 0;         ///< number of samples of all pixels in the first part
+  std::vector<WeightedSums> halves_;     ///< [pixel in reached_], without splatting [pixel]
   Coverage coverage_;
 };
 

@@ -103,9 +103,9 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
     const std::string difference =
         first.header.identity.difference(head.header.identity, files.front().string(), file.string());
     if (!difference.empty()) fail({}, "these are not parts of the same render. {}", difference);
-    if (head.film.blocks != format.blocks)
+    if (head.film.halves != format.halves)
       fail({}, "\"{}\" was rendered with --max-rms, \"{}\" without: they cannot be merged",
-           (format.blocks ? files.front() : file).string(), (format.blocks ? file : files.front()).string());
+           (format.halves ? files.front() : file).string(), (format.halves ? file : files.front()).string());
     format.settings.crop = around(format.settings.crop, head.film.settings.crop);
     if (format.splatting) format.splatting->sampled = around(format.sampled(), head.film.sampled());
     header.request = std::max(header.request, head.header.request);
@@ -130,7 +130,7 @@ ImageFormat finished_image(const RenderPart& part) {
   const bool even = count.least == count.most;
   image.attributes["frond:samples"] =
       even ? fmt::format("{}", count.most) : fmt::format("{} to {}", count.least, count.most);
-  if (part.film.format().blocks)
+  if (part.film.format().halves)
     image.attributes["frond:noise_rms"] = fmt::format("{:.6f}", image_noise(part.film, 0).rms());
   if (part.header.command.empty()) return image;
   std::string command = part.header.command;

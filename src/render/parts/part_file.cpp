@@ -25,9 +25,8 @@ class PartFile {
  public:
   static_assert(std::has_unique_object_representations_v<FilmTile::Pixel>, "no byte of a file is left to chance");
   static_assert(std::has_unique_object_representations_v<FilmTile::BandSums>);
-  static_assert(std::has_unique_object_representations_v<FilmTile::Splat>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::WeightedSums>);
   static_assert(std::has_unique_object_representations_v<FilmTile::BandSplat>);
-  static_assert(std::has_unique_object_representations_v<FilmTile::SplatBlocks>);
   static_assert(sizeof(FilmTile::Hits) == 24);
 
   /// Calls each(pointer, bytes) for every array.
@@ -39,10 +38,10 @@ class PartFile {
     array(tile.hits_);
     array(tile.mean_sums_);
     array(tile.ids_);
-    array(tile.blocks_);
     array(tile.splats_);
     array(tile.band_splats_);
-    array(tile.splat_blocks_);
+    if (!tile.halves_.empty()) each(&tile.paths_in_halves_, sizeof tile.paths_in_halves_);
+    array(tile.halves_);
     each(&tile.rays_, sizeof tile.rays_);
   }
 };
@@ -51,7 +50,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "frond part 3\n", kEnd = "frond part end\n";
+constexpr std::string_view kMagic = "frond part 4\n", kEnd = "frond part end\n";
 
 [[noreturn]] void fail_to_read(const fs::path& path, std::string_view why) {
   fail({}, "\"{}\" {}: render it again", path.string(), why);
@@ -149,7 +148,7 @@ Json json_of(const FilmFormat& f) {
           {"channels", f.channels.names()},
           {"means", f.channels.means()},
           {"ids", f.channels.ids()},
-          {"blocks", f.blocks},
+          {"halves", f.halves},
           {"exponent", f.exponent},
           {"color", f.color.row},
           {"white", f.white},
@@ -164,7 +163,7 @@ FilmFormat film_format_of(const Json& j) {
   const Json& most = j.at("max_component");
   s.max_component = most.is_null() ? std::numeric_limits<double>::infinity() : most.get<double>();
   f.bands = integer_of(j.at("bands"), kMostBands),
-  f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()), f.blocks = j.at("blocks");
+  f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()), f.halves = j.at("halves");
   const Json& exponent = j.at("exponent");
   if (!exponent.is_number_integer() || std::abs(exponent.get<double>()) > kMostExponent) refuse(exponent, "exponent");
   f.exponent = exponent;
@@ -352,7 +351,7 @@ uint64_t take_number(std::string_view& bytes) {
 uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
   if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is not a part file", path.string());
   if (!bytes.starts_with(kMagic))
-    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 3", path.string());
+    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 4", path.string());
   bytes.remove_prefix(kMagic.size());
   if (bytes.size() < sizeof(uint64_t)) fail_to_read(path, "is cut short");
   return take_number(bytes);
