@@ -21,8 +21,10 @@ constexpr double kCameraRay = 0.6, kLightSample = 0.15, kShadowRay = 0.45;
 /// (measured, with the sampler "lattice").
 constexpr double kPower = 1.1, kPowerAtEdges = 1.5;
 
-/// Variance at edges relative to the rest for 64 samples, the usual number, over the same for the 16 of a bundle.
-const double kEdges = std::pow(64. / PathBundle::kMost, kPower - kPowerAtEdges);
+/// From the squared difference of two bundles, at edges, to their variance for 64 samples, the usual number, relative
+/// to that of the rest. The two are halves of one lattice: their difference has the error that all of their samples do
+/// not have, so that its square is 4 (1 - 2^-power) times the variance of a bundle.
+const double kEdges = std::pow(64. / PathBundle::kMost, kPower - kPowerAtEdges) / (2 * (1 - std::exp2(-kPowerAtEdges)));
 
 using Color = std::array<double, 3>;
 
