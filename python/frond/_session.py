@@ -190,12 +190,12 @@ class Scene:
     def render(self, samples=None, *, max_rms=None, time_limit=None, progress=None):
         """Renders and returns an Image.
 
-        samples: samples per pixel, by default those of the scene. max_rms: RMS noise at which to stop (the scene must have
-        been loaded with adaptive=True). time_limit: seconds. progress: a function that is called with the fraction done, in
+        samples: samples per pixel, by default those of the scene; with max_rms the most, by default 2^30. max_rms: RMS noise
+        at which to stop (the scene must have been loaded with adaptive=True). time_limit: seconds. progress: a function that is called with the fraction done, in
         [0, 1], or True for a line on standard error. Raises KeyboardInterrupt when it is interrupted.
         """
         image = Image(self._scene.image(), self)
-        image.render_more(_samples_of(samples, self.samples), max_rms=max_rms, time_limit=time_limit, progress=progress)
+        image.render_more(samples, max_rms=max_rms, time_limit=time_limit, progress=progress)
         return image
 
 
@@ -214,7 +214,7 @@ class Image:
         for name, value in (("max_rms", max_rms), ("time_limit", time_limit)):
             if value is not None and not value >= 0:
                 raise ValueError(f"{name}: a number from 0 on is needed, not {value!r}")
-        total, (least, _) = _samples_of(samples, self._scene.samples), self.samples
+        total, (least, _) = _samples_of(samples, 2**30 if max_rms else self._scene.samples), self.samples
         if max_rms is None and total <= least:
             import warnings
             warnings.warn(f"render_more: the image has {least} samples already, {total} in total were asked for", stacklevel=2)

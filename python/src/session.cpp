@@ -53,20 +53,21 @@ std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, c
   return scene;
 }
 
-/// Adds samples until each pixel has `samples`, or the noise is below `max_rms`, or the time is over.
+/// Adds samples until each pixel has `samples`, or the noise is below `max_rms`, if that is above 0, or the time is
+/// over.
 void render_more(ImageHandle& image, uint64_t samples, double max_rms, double time_limit_seconds,
                  const nb::object& progress) {
   SceneHandle& handle = *image.scene;
   Session& session = handle.owner->session();
   const LoadedScene& scene = handle.task.scene();
   if (max_rms > 0 && !handle.task.is_adaptive()) fail({}, "max_rms: the scene was not loaded for an adaptive render");
-  if (max_rms == 0) scene.check_samples(samples);
+  scene.check_samples(samples);
   run(
       [&](const RenderControl& control) {
         const RenderControl until =
             JobRun{handle.owner->context, handle.args, control}.control_until(time_limit_seconds);
         if (max_rms > 0)
-          session.render_to(scene, {.max_rms = max_rms}, image.part, until);
+          session.render_to(scene, {.max_rms = max_rms, .most_samples = samples}, image.part, until);
         else
           session.render(scene, {0, samples}, image.part, until);
       },

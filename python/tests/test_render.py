@@ -91,8 +91,14 @@ def test_swap_and_pixels(scene_text):
 
 
 def test_adaptive(scene_text):
-    image = frond.loads(scene_text, adaptive=True).render(max_rms=0.02)
-    assert image.samples[0] >= 1
+    scene = frond.loads(scene_text, adaptive=True)
+    assert scene.render(max_rms=0.02).samples[0] >= 32
+    assert scene.render(100, max_rms=1e-9).samples == (100, 100)
+    image = scene.render(48)
+    image.render_more(max_rms=1e-9, samples=70)
+    assert image.samples == (70, 70)
+    with pytest.raises(frond.InputError, match="at least 32 samples"):
+        scene.render(16, max_rms=0.1)
     with pytest.raises(ValueError, match="adaptive=True"):
         frond.loads(scene_text).render(max_rms=0.02)
 

@@ -256,7 +256,7 @@ class SceneRender {
                                lost));
     // Adaptive renders report noise; others report missing samples.
     if (task_.is_adaptive())
-      report_noise(part.film);
+      report_noise(part, samples);
     else if (samples.least < task_.samples().count())
       log.warn({}, fmt::format("the time limit ended: pixels have {} to {} samples, not {}", samples.least,
                                samples.most, task_.samples().count()));
@@ -276,10 +276,15 @@ class SceneRender {
   }
 
   /// Logs the image's noise; warns if it exceeds --max-rms.
-  void report_noise(const Film& film) const {
+  void report_noise(const RenderPart& part, const SampleCount& samples) const {
+    if (samples.least == 0) {
+      run_.log().warn({}, "the render ended before all pixels had samples: their noise is unknown");
+      return;
+    }
     // In the unit of the request: per cent of the means, or film units.
     const bool is_relative = run_.args.is_relative("max-rms");
-    const NoiseEstimate noise = image_noise(film, noise_z(), noise_unit(film, is_relative));
+    const NoiseEstimate noise =
+        image_noise(part.film, noise_z(part.header.round + 1), noise_unit(part.film, is_relative));
     const double max_rms = run_.args.real("max-rms");
     const auto text = [is_relative](double rms) {
       return is_relative ? fmt::format("{:.3g} % of the mean", 100 * rms) : fmt::format("{:.5f}", rms);

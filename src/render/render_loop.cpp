@@ -243,8 +243,7 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   std::mutex mutex;
   int64_t done = 0;
   const auto render_item = [&](int64_t i, int thread) {
-    if (control.stop.stop_requested() || (control.deadline && std::chrono::steady_clock::now() >= *control.deadline))
-      throw Ended();
+    if (control.is_over()) throw Ended();
     auto& worker = workers[size_t(thread)];
     if (!worker) worker = std::make_unique<Worker>(job, film, control.stop);
     // No other thread adds samples of this item: its missing samples remain the same meanwhile.

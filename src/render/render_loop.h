@@ -63,6 +63,8 @@ struct RenderControl {
   std::stop_token stop = {};
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   Progress* progress = nullptr;  ///< may be nullptr
+
+  bool is_over() const { return stop.stop_requested() || (deadline && std::chrono::steady_clock::now() >= *deadline); }
 };
 
 /// Renders all samples of the plan that the film does not contain, and adds them to the film. The resulting film

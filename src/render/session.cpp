@@ -93,6 +93,12 @@ std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, con
   return splatting;
 }
 
+uint64_t paths_of(const Film& film) {
+  uint64_t paths = 0;
+  for (size_t i = 0; i < film.tiles(); ++i) paths += film.tile(i).paths();
+  return paths;
+}
+
 bool has_all(const Film& film, const std::vector<uint64_t>& tile_ends) {
   for (size_t i = 0; i < film.tiles(); ++i)
     if (!film.tile(i).coverage().missing({film.tile_pixels(i), {0, tile_ends[i]}}).empty()) return false;
@@ -274,6 +280,9 @@ RenderStatistics Session::render_plan(const LoadedScene& scene, const WorkPlan& 
 
 RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest& request, RenderPart& part,
                                     const RenderControl& control) {
+  if (request.most_samples < kLeastAdaptive)
+    fail({}, "at least {} samples per pixel are needed to estimate the noise, {} are allowed", kLeastAdaptive,
+         request.most_samples);
   WholeProgress progress(control.progress);
   RenderControl each = control;
   each.progress = &progress;
@@ -292,22 +301,25 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
     if (header.tile_ends.empty()) header.tile_ends = plan.tile_ends;
   });
   for (;;) {
-    progress.plan(statistics.paths, plan.predicted_paths);
+    progress.plan(paths_of(film), plan.predicted_paths);
     statistics += render_plan(scene, {film.sampled(), {}, header.tile_ends}, part, each);
     if (!has_all(film, header.tile_ends)) return statistics;  // ended early
-    if (const auto second = second_half_plan(film, request.most_samples)) {
-      plan = *second;
+    const auto second_half = second_half_plan(film, request.most_samples);
+    if (second_half) {
+      plan = *second_half;
     } else {
       const NoiseUnit unit = noise_unit(film, request.is_relative);
-      if (image_noise(film, noise_z(), unit).upper_rms() <= request.max_rms) return statistics;
-      plan = next_plan(film, request.max_rms, request.most_samples, unit);
+      const NoiseEstimate noise = image_noise(film, noise_z(header.round + 1), unit);
+      if (noise.upper_rms() <= request.max_rms) return statistics;
+      plan = next_plan(film, request.max_rms, request.most_samples, unit, noise);
     }
     if (plan.tile_ends == header.tile_ends) return statistics;  // all tiles have the largest number of samples
+    if (control.is_over()) return statistics;                   // new halves without samples would tell less
     change([&] {
       for (size_t i = 0; i < film.tiles(); ++i)
-        if (double(plan.tile_ends[i]) > film.tile(i).samples_per_pixel()) film.begin_second_half(i);
+        if (plan.tile_ends[i] > samples_of(film.tile(i)).most) film.begin_second_half(i);
       header.tile_ends = plan.tile_ends;
-      ++header.round;
+      if (!second_half) ++header.round;
     });
   }
 }

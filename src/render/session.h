@@ -128,7 +128,7 @@ class Session {
   /// Adaptive render: adds samples to the tiles where they reduce the noise most, until its RMS is below the target
   /// with confidence kNoiseConfidence (render/film/adaptive.h), all tiles have the largest number of samples, or
   /// `control` ends it. The scene must be loaded with ImageRequest::adaptive. An interrupted part continues to the same
-  /// result.
+  /// result. Throws InputError if less than kLeastAdaptive samples are allowed.
   RenderStatistics render_to(const LoadedScene& scene, const NoiseRequest& request, RenderPart& part,
                              const RenderControl& control = {});
 

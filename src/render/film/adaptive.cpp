@@ -1,6 +1,7 @@
 #include "render/film/adaptive.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "instruments/errors/statistics.h"
@@ -17,13 +18,12 @@ double averaged(const Triple& variance, const NoiseUnit& unit) {
 
 double pixels_of(const Crop& c) { return double(c.width()) * double(c.height()); }
 
-/// Samples per pixel of a tile.
-uint64_t samples_of(const FilmTile& tile) {
-  const Crop& c = tile.pixels();
-  return tile.pixel(c.x0, c.y0).samples;
+/// The next power of 2 of which each further one is a doubling, `most` at most.
+double doubled(double samples, double doublings, uint64_t most) {
+  if (doublings == 0) return samples;
+  return std::max(samples,
+                  std::min(double(std::bit_ceil(uint64_t(samples) + 1)) * std::exp2(doublings - 1), double(most)));
 }
-
-uint64_t doubled(uint64_t samples, uint64_t most) { return std::max(samples, std::min(2 * samples, most)); }
 
 /// The variance of a pixel falls with this power of the number of samples (measured, with the sampler "lattice").
 constexpr double kPower = 1.2;
@@ -38,7 +38,7 @@ struct TileNoise {
 
 TileNoise noise_of(const Film& film, size_t i, const NoiseUnit& unit) {
   const FilmTile& tile = film.tile(i);
-  const double pixels = pixels_of(tile.pixels()), samples = double(samples_of(tile));
+  const double pixels = pixels_of(tile.pixels()), samples = double(samples_of(tile).most);
   TileNoise t{pixels, samples, double(tile.rays()) / (pixels * samples) + 1};
   const Crop inside = intersection(tile.pixels(), film.settings().crop);
   for (int y = inside.y0; y < inside.y1; ++y)
@@ -63,14 +63,23 @@ std::vector<double> variances_of(const std::vector<TileNoise>& tiles, size_t col
           const TileNoise& t = tiles[r * columns + c];
           sum.noise += t.noise, sum.between += t.between, sum.inside += t.inside;
         }
-      const TileNoise& own = tiles[row * columns + column];
-      const TileNoise& source = own.inside > 0 ? own : sum;  // a tile next to the image
-      result.push_back(sum.between > 0 ? source.between / source.inside * sum.noise / sum.between : 0);
+      const TileNoise& tile = tiles[row * columns + column];
+      const TileNoise& own = tile.inside > 0 ? tile : sum;  // a tile next to the image has no pixels in it
+      result.push_back(sum.between > 0 ? own.between / own.inside * sum.noise / sum.between : 0);
     }
   return result;
 }
 
 }  // namespace
+
+SampleCount samples_of(const FilmTile& tile) {
+  const Crop& c = tile.pixels();
+  SampleCount n{tile.pixel(c.x0, c.y0).samples, 0};
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x)
+      n = {std::min(n.least, tile.pixel(x, y).samples), std::max(n.most, tile.pixel(x, y).samples)};
+  return n;
+}
 
 double NoiseEstimate::rms() const { return std::sqrt(mean_square); }
 double NoiseEstimate::upper_rms() const { return std::sqrt(upper); }
@@ -101,7 +110,7 @@ NoiseEstimate image_noise(const Film& film, double z, const NoiseUnit& unit) {
   return {sum / pixels, (sum + z * std::sqrt(squares * alike)) / pixels};
 }
 
-double noise_z() { return normal_upper_quantile(sidak_level(1 - kNoiseConfidence, kNoiseLooks)); }
+double noise_z(int number) { return normal_upper_quantile((1 - kNoiseConfidence) / (double(number) * (number + 1))); }
 
 SamplePlan first_plan(const Film& film) {
   return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive / 2),
@@ -113,20 +122,21 @@ std::optional<SamplePlan> second_half_plan(const Film& film, uint64_t most) {
   bool has_more = false;
   for (size_t i = 0; i < film.tiles(); ++i) {
     const FilmTile& tile = film.tile(i);
-    const uint64_t samples = samples_of(tile), end = tile.has_second_half() ? samples : doubled(samples, most);
+    const auto [least_samples, samples] = samples_of(tile);
+    const bool is_doubled = !tile.has_second_half() && least_samples == samples;
+    const uint64_t end = is_doubled ? uint64_t(doubled(double(samples), 1, most)) : samples;
     plan.tile_ends.push_back(end);
     plan.predicted_paths += end * uint64_t(pixels_of(tile.pixels()));
-    has_more |= end > samples;
+    has_more |= end > least_samples;
   }
   return has_more ? std::optional(std::move(plan)) : std::nullopt;
 }
 
-SamplePlan next_plan(const Film& film, double max_rms, uint64_t most, const NoiseUnit& unit) {
+SamplePlan next_plan(const Film& film, double max_rms, uint64_t most, const NoiseUnit& unit, const NoiseEstimate& now) {
   std::vector<TileNoise> tiles;
   for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i, unit));
   const std::vector<double> variance = variances_of(tiles, film.columns());
   // The target applies to the upper bound: the goal for the estimate is lower by their present ratio.
-  const NoiseEstimate now = image_noise(film, noise_z(), unit);
   const double sharpness = now.mean_square > 0 ? now.mean_square / now.upper : 1;
   const double goal = max_rms * max_rms * sharpness * pixels_of(film.settings().crop);
   // `scale` is 1 over the least reduction of the image's noise per ray for which samples are doubled.
@@ -134,7 +144,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most, const Nois
     const TileNoise& t = tiles[i];
     const double worth = scale * variance[i] / (t.samples * t.cost);
     const double doublings = worth > 1 ? std::round(std::log2(worth) / (1 + kPower)) : 0;
-    return std::min(t.samples * std::exp2(doublings), std::max(double(most), t.samples));
+    return doubled(t.samples, doublings, most);
   };
   const auto noise_at = [&](double scale) {
     double noise = 0;
@@ -154,7 +164,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most, const Nois
     for (size_t i = 0; i < tiles.size(); ++i) {
       const double wanted = samples_at(i, high);
       plan.predicted_paths += uint64_t(wanted * tiles[i].pixels);
-      plan.tile_ends.push_back(uint64_t(std::min(wanted, 2 * tiles[i].samples)));
+      plan.tile_ends.push_back(uint64_t(std::min(wanted, doubled(tiles[i].samples, 1, most))));
     }
     return plan;
   };
@@ -164,6 +174,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most, const Nois
     return false;
   };
   SamplePlan plan = plan_for(goal);
+  if (std::ranges::all_of(tiles, [most](const TileNoise& t) { return t.samples >= double(most); })) return plan;
   // The noise test has just failed: a plan without more samples is too optimistic, and the goal is lowered.
   constexpr double kStricter = 0.8, kStrictest = 1e-6;
   for (double part = kStricter; !has_more(plan) && part > kStrictest; part *= kStricter) plan = plan_for(goal * part);

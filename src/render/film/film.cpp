@@ -208,7 +208,7 @@ Film::Gathered Film::own(int x, int y) const {
 }
 
 /// With D = sum(w (L - m)) / samples, where m is the value of the pixel, the value changed by the difference of D
-/// between all samples and the first ones, over the weight. (To first order: the pixel is a ratio of sums.)
+/// between the first half and all samples, over the weight. (To first order: the pixel is a ratio of sums.)
 Triple Film::half_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const {
   const double samples = tile.samples_per_pixel(), first_samples = tile.samples_in_first_half();
   if (!tile.has_second_half() || all.weight <= 0) return {};
@@ -240,6 +240,11 @@ Triple Film::half_variance(int x, int y) const {
   else
     add(tiles_[tile_at(x, y)]);
   return is_known ? v : variance(x, y);
+}
+
+void Film::clear_first_half(size_t i) {
+  const std::lock_guard lock((*locks_)[i % kLocks]);
+  tiles_[i].clear_first_half();
 }
 
 void Film::begin_second_half(size_t i) {

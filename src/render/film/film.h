@@ -56,14 +56,16 @@ class Film {
   /// it ignores their negative correlation. With splatting it is computed from the variances of the samples in each
   /// pixel and their mean weights; the position of a sample in its pixel is taken as independent of its value.
   Triple variance(int x, int y) const;
-  /// Estimated variance of `mean` from the difference between the first part of the samples and all of them, for a film
+  /// Estimated variance of `mean` from the difference between the first half of the samples and all of them, for a film
   /// with `halves`. For n independent samples, the first h of which have the mean m_h, (m_n - m_h)^2 / (n / h - 1) has
   /// the expectation of the variance of m_n. A low-discrepancy sequence whose variance falls as n^-a has 2^a - 1 times
   /// its variance for n = 2 h: more, for a > 1. It has one degree of freedom. Falls back on `variance` if the samples
-  /// that reach the pixel have no second part.
+  /// that reach the pixel have no second half.
   Triple half_variance(int x, int y) const;
-  /// Makes the samples of tile `i` the first part. Thread-safe.
+  /// Makes the samples of tile `i` the first half. Thread-safe.
   void begin_second_half(size_t i);
+  /// Forgets the first half of tile `i`. Thread-safe.
+  void clear_first_half(size_t i);
   /// Mean of the samples that carry a band, its estimated variance, 0 for fewer than two samples, and their number.
   struct BandMean {
     double mean = 0, variance = 0;
@@ -112,7 +114,7 @@ class Film {
   template <class Moments>
   double splatted_variance(int x, int y, double mean, double weight, const Moments& moments) const;
   Gathered own(int x, int y) const;
-  /// Contribution of the samples of one tile to `half_variance`; 0 if they have no second part.
+  /// Contribution of the samples of one tile to `half_variance`; 0 if they have no second half.
   Triple half_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const;
 
   FilmFormat format_;

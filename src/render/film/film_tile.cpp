@@ -159,8 +159,8 @@ void FilmTile::clear(const Crop& pixels) {
   const size_t reached = size_t(reached_.width()) * size_t(reached_.height());
   splats_.assign(reached, {});
   band_splats_.assign(reached * band_count_, {});
-  paths_in_halves_ = 0;
-  halves_.assign(has_halves_ ? (shares_samples() ? reached : count) : 0, {});
+  first_half_paths_ = 0;
+  first_half_.assign(has_halves_ ? (shares_samples() ? reached : count) : 0, {});
   rays_ = 0;
   coverage_ = {};
 }
@@ -291,7 +291,7 @@ double FilmTile::samples_per_pixel() const {
 }
 
 double FilmTile::samples_in_first_half() const {
-  return double(paths_in_halves_) / (double(crop_.width()) * double(crop_.height()));
+  return double(first_half_paths_) / (double(crop_.width()) * double(crop_.height()));
 }
 
 uint64_t FilmTile::paths() const {
@@ -304,13 +304,18 @@ FilmTile::WeightedSums FilmTile::sums(int x, int y) const {
   return shares_samples() ? splat(x, y) : WeightedSums{pixel(x, y).sum, pixel(x, y).weight};
 }
 
+void FilmTile::clear_first_half() {
+  first_half_paths_ = 0;
+  std::ranges::fill(first_half_, WeightedSums{});
+}
+
 void FilmTile::begin_second_half() {
   assert(has_halves_);
-  paths_in_halves_ = paths();
+  first_half_paths_ = paths();
   const Crop& all = shares_samples() ? reached_ : crop_;
   size_t at = 0;
   for (int y = all.y0; y < all.y1; ++y)
-    for (int x = all.x0; x < all.x1; ++x) halves_[at++] = sums(x, y);
+    for (int x = all.x0; x < all.x1; ++x) first_half_[at++] = sums(x, y);
 }
 
 void FilmTile::merge_splats(const FilmTile& other) {
@@ -320,7 +325,7 @@ void FilmTile::merge_splats(const FilmTile& other) {
     const size_t to = reached_index(c.x0, y), from = other.reached_index(c.x0, y);
     add_all(splats_, to, other.splats_, from, width);
     add_all(band_splats_, to * band_count_, other.band_splats_, from * band_count_, width * band_count_);
-    if (has_halves_) add_all(halves_, to, other.halves_, from, width);
+    if (other.first_half_paths_ > 0) add_all(first_half_, to, other.first_half_, from, width);
   }
 }
 
@@ -336,10 +341,10 @@ bool FilmTile::merge(const FilmTile& other) {
     add_all(pixels_, to, other.pixels_, from, width);
     add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
     for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
-    if (has_halves_ && !shares_samples()) add_all(halves_, to, other.halves_, from, width);
+    if (other.first_half_paths_ > 0 && !shares_samples()) add_all(first_half_, to, other.first_half_, from, width);
   }
   if (shares_samples()) merge_splats(other);
-  paths_in_halves_ += other.paths_in_halves_;
+  first_half_paths_ += other.first_half_paths_;
   rays_ += other.rays_;
   return true;
 }

@@ -20,7 +20,7 @@ struct FilmFormat {
   FilmSettings settings;
   size_t bands = 0;           ///< number of spectral bands; 0: the film has three colours
   ChannelList channels = {};  ///< additional channels, from the first hits of camera rays
-  bool halves = false;        ///< the film has sums over the first part of its samples, from which noise is estimated
+  bool halves = false;        ///< the film has sums over the first half of its samples, from which noise is estimated
   /// Sums are in units of 2^exponent, which is close to the image's typical value. In these units, values of samples
   /// can range from 10^-13 to 10^8. Brighter values are clamped and counted; in sums of squares, values below 10^-6 are
   /// lost.
@@ -111,8 +111,11 @@ class FilmTile {
            const SplatKernel* kernel = nullptr);
   /// Adds the values of additional channels for one sample.
   void add(int x, int y, const Features& features);
-  /// Makes the present sums those of the first part, for a film with `halves`; the next samples are the second part.
+  /// For a film with `halves`: makes the present sums those of the first half; the next samples are the second half,
+  /// which need not have as many.
   void begin_second_half();
+  /// Forgets the first half.
+  void clear_first_half();
   /// Adds to the number of rays.
   void add_rays(uint64_t rays) { rays_ += rays; }
   /// Adds the sums of another tile, whose pixels must lie in this one. Returns false, without a change, if the tiles
@@ -136,16 +139,18 @@ class FilmTile {
     return band_splats_[reached_index(x, y) * band_count_ + band];
   }
   /// Sums over the samples that reach a pixel; without splatting, over those of the pixel. For a film with `halves`,
-  /// the same over the first part of the samples.
+  /// the same over the first half of the samples.
   WeightedSums sums(int x, int y) const;
   const WeightedSums& first_half(int x, int y) const {
-    return halves_[shares_samples() ? reached_index(x, y) : index(x, y)];
+    return first_half_[shares_samples() ? reached_index(x, y) : index(x, y)];
   }
-  /// Number of samples, averaged over its pixels, and of those in the first part.
+  /// Number of samples of all pixels.
+  uint64_t paths() const;
+  /// Number of samples, averaged over its pixels, and of those in the first half.
   double samples_per_pixel() const;
   double samples_in_first_half() const;
-  /// True if there are samples in the first part and beyond it.
-  bool has_second_half() const { return paths_in_halves_ > 0 && paths() > paths_in_halves_; }
+  /// True if there are samples in the first half and beyond it.
+  bool has_second_half() const { return first_half_paths_ > 0 && paths() > first_half_paths_; }
   /// Number of rays traced for its samples.
   uint64_t rays() const { return rays_; }
   friend bool operator==(const FilmTile&, const FilmTile&) = default;
@@ -154,7 +159,6 @@ class FilmTile {
   friend class PartFile;  // reads and writes the arrays
 
   bool shares_samples() const { return reach_x_ >= 0; }
-  uint64_t paths() const;
   void add_features(size_t at, const FilmTile& other, size_t from);
   struct SplatSample;
   void add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples);
@@ -177,14 +181,14 @@ class FilmTile {
   int width_, height_;               ///< full resolution of the image
   uint64_t rays_ = 0;
   std::vector<Pixel> pixels_;
-  std::vector<BandSums> bands_;          ///< [pixel][band]
-  std::vector<Hits> hits_;               ///< [pixel], if there are means or ids
-  std::vector<ExactSum<40>> mean_sums_;  ///< [pixel][value]
-  std::vector<double> ids_;              ///< [pixel][value]
-  std::vector<WeightedSums> splats_;     ///< [pixel in reached_]
-  std::vector<BandSplat> band_splats_;   ///< [pixel in reached_][band]
-  uint64_t paths_in_halves_ = 0;         ///< number of samples of all pixels in the first part
-  std::vector<WeightedSums> halves_;     ///< [pixel in reached_], without splatting [pixel]
+  std::vector<BandSums> bands_;           ///< [pixel][band]
+  std::vector<Hits> hits_;                ///< [pixel], if there are means or ids
+  std::vector<ExactSum<40>> mean_sums_;   ///< [pixel][value]
+  std::vector<double> ids_;               ///< [pixel][value]
+  std::vector<WeightedSums> splats_;      ///< [pixel in reached_]
+  std::vector<BandSplat> band_splats_;    ///< [pixel in reached_][band]
+  uint64_t first_half_paths_ = 0;         ///< number of samples of all pixels in the first half
+  std::vector<WeightedSums> first_half_;  ///< [pixel in reached_], without splatting [pixel]
   Coverage coverage_;
 };
 

@@ -118,7 +118,10 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
     const Film film = read_part(files[i]).film;
     for (size_t t = 0; t < film.tiles(); ++t) {
       const Crop c = film.tile_pixels(t);
-      if (!whole.film.merge(whole.film.tile_at(c.x0, c.y0), film.tile(t))) fail_with_overlap(files, i);
+      const size_t tile = whole.film.tile_at(c.x0, c.y0);
+      const bool is_cut = whole.film.tile(tile).samples_per_pixel() > 0;  // first halves need not fit together
+      if (!whole.film.merge(tile, film.tile(t))) fail_with_overlap(files, i);
+      if (is_cut && format.halves) whole.film.clear_first_half(tile);
     }
   }
   return whole;

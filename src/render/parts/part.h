@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "render/film/adaptive.h"
 #include "render/film/image_format.h"
 #include "render/film/statistics.h"
 #include "render/parts/identity.h"
@@ -19,7 +20,7 @@ struct PartHeader {
   uint64_t request = 0;  ///< requested samples per pixel; adaptive renders can have other numbers
   bool adaptive = false;
   std::vector<uint64_t> tile_ends = {};  ///< adaptive render: samples per pixel of each tile in the current plan
-  int round = 0;                         ///< adaptive render: number of plans before the current one
+  int round = 0;                         ///< adaptive render: number of noise tests that the film has failed
   RenderStatistics statistics = {};
 };
 
@@ -30,10 +31,6 @@ struct RenderPart {
   Film film;
 };
 
-/// Smallest and largest number of samples of a pixel.
-struct SampleCount {
-  uint64_t least = 0, most = 0;
-};
 /// Counts the samples of all pixels that the film takes samples of.
 SampleCount sample_count(const Film& film);
 

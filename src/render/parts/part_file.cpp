@@ -40,9 +40,18 @@ class PartFile {
     array(tile.ids_);
     array(tile.splats_);
     array(tile.band_splats_);
-    if (!tile.halves_.empty()) each(&tile.paths_in_halves_, sizeof tile.paths_in_halves_);
-    array(tile.halves_);
+    if (!tile.first_half_.empty()) each(&tile.first_half_paths_, sizeof tile.first_half_paths_);
+    array(tile.first_half_);
     each(&tile.rays_, sizeof tile.rays_);
+  }
+  /// True if the numbers of samples are possible ones of the tile's coverage.
+  static bool has_counts_of_coverage(const FilmTile& tile) {
+    uint64_t samples = 0;
+    for (const FilmTile::Pixel& pixel : tile.pixels_) {
+      if (pixel.samples > tile.paths()) return false;
+      samples += pixel.samples;
+    }
+    return samples == tile.paths() && tile.first_half_paths_ <= samples;
   }
 };
 
@@ -72,6 +81,8 @@ constexpr int kMostPixels = 1 << 24;  ///< in a row or a column
 constexpr size_t kMostBands = 1 << 16;
 constexpr int kMostExponent = 2048;
 constexpr double kMostWeight = 1e6;  // of a filter; usual ones are about 1
+constexpr int kMostRounds = 1 << 20;
+constexpr uint64_t kMostSamples = uint64_t{1} << 40;  ///< of a pixel
 
 Json json_of(const Crop& c) { return {c.x0, c.y0, c.x1, c.y1}; }
 Crop crop_of(const Json& j) {
@@ -227,8 +238,8 @@ PartHeader header_of(const Json& j) {
   h.scene_crop = crop_of(j.at("scene_crop"));
   h.pixel_scale = integer_of(j.at("pixel_scale"), 2);
   h.request = integer_of<uint64_t>(j.at("request")), h.adaptive = j.at("adaptive");
-  h.round = integer_of<int>(j.at("round"));
-  for (const Json& end : j.at("tile_ends")) h.tile_ends.push_back(integer_of<uint64_t>(end));
+  h.round = integer_of(j.at("round"), kMostRounds);
+  for (const Json& end : j.at("tile_ends")) h.tile_ends.push_back(integer_of(end, kMostSamples));
   h.statistics = statistics_of(j.at("statistics"));
   return h;
 }
@@ -334,10 +345,12 @@ void read_tile(Decompressor& from, FilmTile& tile, const fs::path& path) {
   for (uint64_t i = 0; i < count; ++i) {
     const auto item = from.get<WorkItem>();
     if (!is_within(item.pixels.x0, item.pixels.x1, pixels.x0, pixels.x1) ||
-        !is_within(item.pixels.y0, item.pixels.y1, pixels.y0, pixels.y1) || item.samples.empty() || !tile.cover(item))
+        !is_within(item.pixels.y0, item.pixels.y1, pixels.y0, pixels.y1) || item.samples.empty() ||
+        item.samples.end > kMostSamples || !tile.cover(item))
       fail_to_read(path, "is damaged");
   }
   PartFile::for_each_array(tile, [&from](void* data, size_t bytes) { from.get(data, bytes); });
+  if (!PartFile::has_counts_of_coverage(tile)) fail_to_read(path, "is damaged");
 }
 
 uint64_t take_number(std::string_view& bytes) {
@@ -447,6 +460,8 @@ RenderPart decode_part(std::string_view bytes, const fs::path& path) try {
   Film film(head.film);
   RenderPart part{std::move(head.header), std::move(film)};
   Decompressor sums(bytes, path);
+  if (const size_t ends = part.header.tile_ends.size(); ends > 0 && ends != part.film.tiles())
+    fail_to_read(path, "is damaged");
   for (size_t i = 0; i < part.film.tiles(); ++i) {
     FilmTile tile(part.film.format(), part.film.tile_pixels(i));
     read_tile(sums, tile, path);
