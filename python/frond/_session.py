@@ -191,8 +191,9 @@ class Scene:
         """Renders and returns an Image.
 
         samples: samples per pixel, by default those of the scene; with max_rms the most, by default 2^30. max_rms: RMS noise
-        at which to stop (the scene must have been loaded with adaptive=True). time_limit: seconds. progress: a function that is called with the fraction done, in
-        [0, 1], or True for a line on standard error. Raises KeyboardInterrupt when it is interrupted.
+        at which to stop (the scene must have been loaded with adaptive=True). time_limit: seconds. progress: a function that
+        is called with the fraction done, in [0, 1], or True for a line on standard error. Raises KeyboardInterrupt when it is
+        interrupted.
         """
         image = Image(self._scene.image(), self)
         image.render_more(samples, max_rms=max_rms, time_limit=time_limit, progress=progress)
