@@ -2,7 +2,7 @@
 
 public_test.py                    all cases
 public_test.py CASE...            these
-public_test.py --list             the table of docs/public_cases.md
+public_test.py --write-page       writes the table of docs/public_cases.md
 
 FROND names the program.
 """
@@ -20,6 +20,8 @@ import tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
 FROND = pathlib.Path(os.environ.get("FROND", HERE.parents[1] / "build" / "release" / "frond"))
+PAGE = HERE.parents[1] / "docs" / "public_cases.md"
+HEAD_OF_TABLE = "| case | what is right | report | state |"
 CASE_KEYS = {"about", "reports", "not_met", "needs", "steps"}
 STEP_KEYS = {"command", "exit", "says", "never_says", "values", "absent"}
 VALUE_KEYS = {"file", "at", "row", "column", "is", "within", "error_column", "errors", "why"}
@@ -115,21 +117,21 @@ def lacks(case):
     return None
 
 
-def table(cases):
-    """Rows of docs/public_cases.md."""
-    lines = ["| case | what is right | report | state |", "|---|---|---|---|"]
+def page_of(cases):
+    """docs/public_cases.md with its table, which ends the page, made anew."""
+    lines = [HEAD_OF_TABLE, "|---|---|---|---|"]
     for case in cases:
         links = ", ".join(f"[{number}]({link})" if link.startswith("http") else link
                           for number, link in enumerate(case.record["reports"], 1))
         state = f"not met: {case.record['not_met']}" if "not_met" in case.record else "met"
         lines.append(f"| [{case.name}](../tests/public/{case.name}/case.toml) | {case.record['about'].strip()} | {links} | {state} |")
-    return "\n".join(lines) + "\n"
+    return PAGE.read_text().partition(HEAD_OF_TABLE)[0] + "\n".join(lines) + "\n"
 
 
 def main(words):
     cases = [Case(folder) for folder in sorted(HERE.iterdir()) if (folder / "case.toml").is_file()]
-    if words == ["--list"]:
-        sys.stdout.write(table(cases))
+    if words == ["--write-page"]:
+        PAGE.write_text(page_of(cases))
         return 0
     if unknown := set(words) - {case.name for case in cases}:
         print(f"no case {', '.join(sorted(unknown))}", file=sys.stderr)
@@ -157,6 +159,9 @@ def main(words):
             else:
                 failed.append(case.name)
                 print(f"{case.name}: {error}")
+    if not words and page_of(cases) != PAGE.read_text():
+        failed.append(PAGE.name)
+        print("docs/public_cases.md does not have the table of these cases: run scripts/generate")
     print(f"{passed} passed, {len(failed)} failed, {left_out} skipped")
     return 1 if failed or passed == 0 else 0
 
