@@ -2,20 +2,15 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
-#include <mutex>
-#include <regex>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "core/error.h"
+#include "system/temporary_name.h"
 
 namespace frond {
 namespace {
@@ -24,61 +19,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail_to_write(const fs::path& path, int error) {
   fail({}, "cannot write \"{}\": {}", path.string(), std::strerror(error));
-}
-
-/// Returns the target of a symbolic link, else the path: renaming a file to a link would replace the link.
-fs::path follow_links(const fs::path& path) {
-  std::error_code error;
-  const fs::path target = fs::canonical(path, error);
-  return error ? path : target;
-}
-
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
-
-/// Name of the n-th temporary file of this process. No name is used twice, since remove_left_files of another process
-/// may still hold a file that had it.
-std::string temporary_name() {
-  static std::atomic<uint64_t> count = 0;
-  return fmt::format(".frond-{}-{}.tmp", getpid(), count++);
-}
-
-bool is_temporary_name(const std::string& name) {
-  static const std::regex pattern(R"(\.frond-\d+-\d+\.tmp)");
-  return std::regex_match(name, pattern);
-}
-
-/// Whether `path` is still the name of the open file.
-bool is_named(int file, const fs::path& path) {
-  struct stat opened {
-  }, named{};
-  return fstat(file, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
-         opened.st_dev == named.st_dev;
-}
-
-/// Deletes temporary files that killed processes have left in a folder. A process locks its own until they have their
-/// final name, so that one whose lock can be taken has no writer. Once for each folder.
-void remove_left_files(const fs::path& folder) {
-  static std::mutex mutex;
-  static std::set<fs::path> seen;
-  const std::lock_guard lock(mutex);
-  if (!seen.insert(folder).second) return;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const fs::path path = entry->path();
-    if (!is_temporary_name(path.filename().string())) continue;
-    // For writing, because NFS makes an exclusive lock of a lock for writing.
-    const int file = open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) continue;
-    if (flock(file, LOCK_EX | LOCK_NB) == 0 && is_named(file, path)) unlink(path.c_str());
-    close(file);
-  }
-}
-
-/// Locks a new file against remove_left_files. Returns false if that was faster. Without locks in a file system nothing
-/// is removed there.
-bool lock_new(int file, const fs::path& path) {
-  if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
-  return is_named(file, path);
 }
 
 /// Link of an open file in /proc, by which it gets a name.
@@ -95,13 +35,14 @@ int open_nameless(const fs::path& folder) {
 
 }  // namespace
 
-NewFile::NewFile(const fs::path& path) : target_(follow_links(path)) {
+NewFile::NewFile(const fs::path& path, const fs::path& shown)
+    : target_(follow_links(path)), shown_(shown.empty() ? target_ : shown) {
   remove_left_files(folder_of(target_));
   descriptor_ = open_nameless(folder_of(target_));
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
     path_ = folder_of(target_) / temporary_name();
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail_to_write(target_, errno);
+    if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail_to_write(shown_, errno);
     if (descriptor_ >= 0 && !lock_new(descriptor_, path_)) close(std::exchange(descriptor_, -1));
   }
 }
@@ -115,7 +56,7 @@ void NewFile::write(std::span<const unsigned char> bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail_to_write(target_, errno);
+    if (n < 0) fail_to_write(shown_, errno);
     bytes = bytes.subspan(static_cast<size_t>(n));
   }
 }
@@ -123,15 +64,15 @@ void NewFile::write(std::span<const unsigned char> bytes) {
 /// The lock is held until the file has its name. A file without a name cannot replace another one: it gets a temporary
 /// name first.
 void NewFile::finish() {
-  if (fsync(descriptor_) != 0) fail_to_write(target_, errno);
+  if (fsync(descriptor_) != 0) fail_to_write(shown_, errno);
   while (path_.empty()) {
     const fs::path name = folder_of(target_) / temporary_name();
     if (linkat(AT_FDCWD, link_of(descriptor_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
       path_ = name;
     else if (errno != EEXIST)
-      fail_to_write(target_, errno);
+      fail_to_write(shown_, errno);
   }
-  if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
+  if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(shown_, errno);
   path_.clear();
   close(std::exchange(descriptor_, -1));
 }

@@ -22,8 +22,8 @@ void replace_file(const std::filesystem::path& path, std::span<const unsigned ch
 /// when `finish` returns. All functions throw InputError with the system's reason.
 class NewFile {
  public:
-  /// Creates a temporary file in the folder of `path`.
-  explicit NewFile(const std::filesystem::path& path);
+  /// Creates a temporary file in the folder of `path`. Messages name `shown`, by default `path`.
+  explicit NewFile(const std::filesystem::path& path, const std::filesystem::path& shown = {});
   /// Deletes the temporary file unless `finish` has been called.
   ~NewFile();
   NewFile(const NewFile&) = delete;
@@ -35,7 +35,7 @@ class NewFile {
   void finish();
 
  private:
-  std::filesystem::path target_, path_;
+  std::filesystem::path target_, shown_, path_;
   int descriptor_ = -1;
 };
 
