@@ -42,7 +42,8 @@ void check_writable(const fs::path& path) {
   check_replaceable(path);
 }
 
-void write_image(const fs::path& path, const Image& image, const ImageHeader& header, ExrDepth depth) {
+std::vector<unsigned char> image_bytes(const fs::path& path, const Image& image, const ImageHeader& header,
+                                       ExrDepth depth) {
   const Format format = format_of(path);
   const size_t channels = image.channels.size();
   assert(image.pixels.size() == size_t(image.width) * size_t(image.height) * channels);
@@ -54,8 +55,11 @@ void write_image(const fs::path& path, const Image& image, const ImageHeader& he
   if (!header.color_space.empty()) complete.text[kColorSpaceKey] = header.color_space;
   const std::string date = fmt::format("{:%Y:%m:%d %H:%M:%S}", fmt::gmtime(file_time()));
   complete.text[format == Format::exr ? "capDate" : "DateTime"] = date;
-  replace_file(path, format == Format::exr ? encode_exr(image, complete, depth)
-                                           : image_codec().encode(path, image, complete.text));
+  return format == Format::exr ? encode_exr(image, complete, depth) : image_codec().encode(path, image, complete.text);
+}
+
+void write_image(const fs::path& path, const Image& image, const ImageHeader& header, ExrDepth depth) {
+  replace_file(path, image_bytes(path, image, header, depth));
 }
 
 ImageFile read_image(const fs::path& path, const Location& where) {

@@ -47,6 +47,10 @@ bool is_exr(const std::filesystem::path& path);
 void write_image(const std::filesystem::path& path, const Image& image, const ImageHeader& header,
                  ExrDepth depth = ExrDepth::single);
 
+/// Returns the content of the file that `write_image` would write.
+std::vector<unsigned char> image_bytes(const std::filesystem::path& path, const Image& image, const ImageHeader& header,
+                                       ExrDepth depth = ExrDepth::single);
+
 /// Image file as read.
 struct ImageFile {
   Image image;

@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 
 #include "jobs/record/command_line.h"
 #include "jobs/record/pbrt_options.h"
-#include "report/text_output.h"
 #include "scene/format/words.h"
-#include "system/atomic_file.h"
 #include "system/file_time.h"
+#include "system/new_files.h"
 
 namespace frond {
 
 // `frond man`: man pages in roff, from the records of the jobs (man-pages(7), groff_man(7)).
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr JobParam kParams[] = {
     JobParam("command", ArgumentKind::text, "Command that the page describes; frond itself by default.",
@@ -171,10 +167,10 @@ Result man(const JobRun& run) {
   const std::string command = run.args.text("command");
   if (!run.args.given("folder"))
     return {.text = command.empty() ? overview() : page(find_job(command)), .is_requested = true};
-  const fs::path folder = run.args.text("folder");
-  make_folders(folder);
-  write_text((folder / "frond.1").string(), overview());
-  for (const JobInfo* job : all_jobs()) write_text((folder / (page_name(job->name) + ".1")).string(), page(*job));
+  NewFiles files(run.args.text("folder"));
+  files.write("frond.1", overview());
+  for (const JobInfo* job : all_jobs()) files.write(page_name(job->name) + ".1", page(*job));
+  files.finish();
   return {};
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "image/image_file.h"
@@ -16,6 +15,7 @@
 #include "render/parts/part_file.h"
 #include "study/choose/choice_report.h"
 #include "system/atomic_file.h"
+#include "system/file_uses.h"
 
 namespace frond {
 
@@ -180,6 +180,7 @@ class SceneRender {
       names_ = {part, part + ".checkpoint"};  // a part of this name is complete
       return;
     }
+    if (!args.given("output")) film_output_.emplace("the scene's Film", task_.film_file(), task_.film_where());
     output_.emplace(args.given("output") ? args.text("output") : task_.film_file(), display_of(args));
     for (const char* name : {"channels", "color-space"})
       if (args.given(name) && !is_exr(output_->path()))
@@ -349,6 +350,7 @@ class SceneRender {
   std::vector<std::filesystem::path> files_;
   RenderTask task_;
   RenderViews views_;
+  std::optional<PlannedOutput> film_output_;
   std::optional<ImageOutput> output_;     ///< empty if a part is written
   std::optional<KeptFile::Names> names_;  ///< empty if no part is kept
   std::optional<KeptFile> kept_;          ///< kept until all is written, because a signal may arrive before
@@ -361,15 +363,16 @@ class SceneRender {
 void check_scenes(const JobRun& run, const std::vector<std::vector<std::filesystem::path>>& scenes) {
   JobContext silent(silent_log(), run.context.options());
   const JobRun quiet{silent, run.args, run.control};
-  std::map<std::string, std::string> by_output;
+  std::vector<std::pair<std::string, std::string>> outputs;  // the Film's file, and its scene
   for (const auto& files : scenes) {
     if (files.back() == "-") continue;  // standard input can be read once only
     RenderTask task(quiet);
     task.read(files);
-    const auto [first, is_new] = by_output.emplace(task.film_file(), files.back().string());
-    if (!is_new)
-      fail({}, "{} and {} are both written to {}: give their Films a \"filename\" each, or render one with {}",
-           first->second, files.back().string(), first->first, run.args.spelled("output"));
+    for (const auto& [output, scene] : outputs)
+      if (is_same_file(output, task.film_file()))
+        fail({}, "{} and {} are both written to {}: give their Films a \"filename\" each, or render one with {}", scene,
+             files.back().string(), output, run.args.spelled("output"));
+    outputs.emplace_back(task.film_file(), files.back().string());
   }
 }
 

@@ -7,10 +7,9 @@
 #include "image/image_file.h"
 #include "jobs/submit/engine.h"
 #include "jobs/support/render_task.h"
-#include "report/text_output.h"
-#include "system/atomic_file.h"
 #include "system/child_process.h"
 #include "system/file_bytes.h"
+#include "system/new_files.h"
 
 namespace frond {
 
@@ -72,9 +71,10 @@ std::vector<const JobParam*> handed_on(const JobRun& run) {
   return params;
 }
 
-/// Renders for a moment, so that errors appear now and not an hour later in each task.
-void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam* const> params) {
-  const fs::path part = folder / "parts" / "trial.part";
+/// Renders for a moment, so that errors appear now and not an hour later in each task. The part is written and deleted
+/// in the folder of the tasks' parts.
+void try_out(const JobRun& run, const fs::path& parts, std::span<const JobParam* const> params) {
+  const fs::path part = parts / "trial.part";
   Arguments args(params_of(kRenderJob), run.args.spelling());
   for (const JobParam* p : params)
     if (run.args.given(p->name)) args.set(p->name, run.args.words(p->name));
@@ -82,15 +82,9 @@ void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam
   args.set("samples", fmt::format("0:{}", run.args.count("spp") / run.args.count("tasks")));
   args.set("time-limit", "0.001");
   args.set("part", part.string());
-  try {
-    JobContext silent(silent_log(), run.context.options());
-    run_job(kRenderJob, {silent, args, {}});
-    fs::remove(part);
-  } catch (...) {
-    std::error_code ignored;
-    for (const fs::path& left : {part, part.parent_path(), folder}) fs::remove(left, ignored);
-    throw;
-  }
+  JobContext silent(silent_log(), run.context.options());
+  run_job(kRenderJob, {silent, args, {}});
+  fs::remove(part);
 }
 
 /// Returns the options of `frond render` for the tasks. Options of the session that are not arguments (from Python) are
@@ -211,13 +205,15 @@ Result submit(const JobRun& run) {
   check_vacant(folder);
   const auto params = handed_on(run);
   const auto values = values_of(run, engine, folder, output, params);
-  make_folders(folder / "parts");
-  try_out(run, folder, params);
+  NewFiles files(folder);
+  try_out(run, files.folder("parts"), params);
   for (const EngineFile& file : engine.files) {
-    const fs::path path = folder / file.name;
-    write_text(path.string(), filled(file.content, values));
-    if (file.is_executable) fs::permissions(path, fs::perms::owner_exec | fs::perms::group_exec, fs::perm_options::add);
+    const std::string name(file.name);
+    files.write(name, filled(file.content, values));
+    if (file.is_executable)
+      fs::permissions(files.file(name), fs::perms::owner_exec | fs::perms::group_exec, fs::perm_options::add);
   }
+  files.finish();
   const std::string command = command_text(engine, folder);
   const std::string text = args.flag("run")
                                ? start(engine, folder, args.flag("quiet"))

@@ -99,6 +99,8 @@ struct Chart {
 
 /// Returns a self-contained SVG. Equal charts give equal text.
 std::string chart_svg(const Chart& chart);
+/// Returns the content of a PNG file. Throws InputError if PNG is not available.
+std::string chart_png(const Chart& chart);
 /// Returns the reason why PNG is not available (librsvg is missing); "" if it is available.
 std::string png_refusal();
 

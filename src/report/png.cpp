@@ -68,8 +68,10 @@ void check_chart(const std::string& path) {
   if (const std::string why = png_refusal(); !why.empty()) fail({}, "{}", why);
 }
 
+std::string chart_png(const Chart& chart) { return png_of(chart_svg(chart)); }
+
 void write_chart(const std::string& path, const Chart& chart) {
-  const std::string svg = chart_svg(chart), bytes = path.ends_with(".png") ? png_of(svg) : svg;
+  const std::string bytes = path.ends_with(".png") ? chart_png(chart) : chart_svg(chart);
   replace_file(path, {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/parallel.h"
+#include "system/file_uses.h"
 
 namespace frond {
 namespace {
@@ -50,6 +51,7 @@ File open(const Source& source) {
   check_kind(source);
   File file(std::fopen(source.path.c_str(), "rb"));
   if (!file) source.refuse("open", errno);
+  note_read(source.path, source.where);
   return file;
 }
 

@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "system/atomic_file.h"
-#include "system/file_identity.h"
+#include "system/file_uses.h"
 #include "system/temporary_name.h"
 
 namespace frond {

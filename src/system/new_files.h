@@ -27,6 +27,8 @@ class NewFiles {
   std::filesystem::path file(const std::string& name);
   /// Returns the temporary path of a folder, which is created.
   std::filesystem::path folder(const std::string& name);
+  /// Whether `file` or `write` has been called for this name.
+  bool contains(const std::string& name) const { return known_.contains(name); }
   void write(const std::string& name, std::span<const unsigned char> bytes);
   void write(const std::string& name, std::string_view text);
   /// Gives the files their names, in the order of `file` and `write`: the last is there only when all are. If one

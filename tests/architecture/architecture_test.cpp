@@ -1,8 +1,11 @@
+#include <fnmatch.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -233,6 +236,47 @@ TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {
     std::ifstream in(entry.path());
     for (std::string line; std::getline(in, line);) EXPECT_FALSE(std::regex_search(line, heavy)) << entry.path();
   }
+}
+
+/// Names in the root of the repository: those that git tracks, or in an archive of the sources all that .gitignore does
+/// not name.
+std::set<std::string> names_in_root() {
+  std::set<std::string> names;
+  if (FILE* listed = std::filesystem::exists(FROND_SOURCE_DIR "/.git")
+                         ? popen("git -C '" FROND_SOURCE_DIR "' ls-files -z 2>/dev/null", "r")
+                         : nullptr) {
+    std::string text;
+    for (int c; (c = std::fgetc(listed)) != EOF;) text += char(c);
+    pclose(listed);
+    std::istringstream in(text);
+    for (std::string path; std::getline(in, path, '\0');) names.insert(path.substr(0, path.find('/')));
+  }
+  if (!names.empty()) return names;
+  std::vector<std::string> ignored{".git"};
+  std::ifstream in(FROND_SOURCE_DIR "/.gitignore");
+  for (std::string line; std::getline(in, line);) {
+    std::erase(line, '/');
+    if (!line.empty()) ignored.push_back(line);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(FROND_SOURCE_DIR)) {
+    const std::string name = entry.path().filename().string();
+    if (std::ranges::none_of(ignored, [&](const std::string& i) { return fnmatch(i.c_str(), name.c_str(), 0) == 0; }))
+      names.insert(name);
+  }
+  return names;
+}
+
+/// A file named -q lay there for months: an option's value that a command took for a file.
+TEST(Architecture, TheRootHoldsWhatIsListedHere) {
+  std::istringstream listed(
+      ".ci .clang-format .clang-tidy .gitattributes .github .gitignore CHANGELOG.md CITATION.cff CMakeLists.txt "
+      "CMakePresets.json CONTRIBUTING.md HACKING.md LICENSE LICENSES NOTICE README.md REUSE.toml SECURITY.md bench "
+      "cmake "
+      "docs examples exports joss mkdocs.yml pyproject.toml python scenes scripts src tests");
+  const std::set<std::string> allowed(std::istream_iterator<std::string>(listed), {});
+  const std::set<std::string> found = names_in_root();
+  EXPECT_TRUE(found.contains("CMakeLists.txt"));
+  for (const std::string& name : found) EXPECT_TRUE(allowed.contains(name)) << name;
 }
 
 TEST(Architecture, CLI11IsIncludedOnce) {

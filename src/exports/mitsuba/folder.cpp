@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "core/random.h"
 #include "image/image_file.h"
-#include "system/atomic_file.h"
 
 namespace frond::mitsuba {
 namespace {
@@ -38,20 +36,15 @@ std::string file_name(std::string_view subfolder, std::string_view name, std::st
 }  // namespace
 
 /// Fails before any work if scene.xml could not be written.
-Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
-  make_folders(path_);
-  check_replaceable(path_ / "scene.xml");
-}
+Folder::Folder(std::filesystem::path path) : path_(path), files_(std::move(path)) { files_.check("scene.xml"); }
 
 /// A file of this name and size has this content.
 std::string Folder::add(std::string_view subfolder, std::string_view name, std::string_view extension,
                         std::span<const unsigned char> bytes) {
-  const std::string relative = file_name(subfolder, name, extension, hash_of(bytes));
-  const std::filesystem::path path = path_ / relative;
+  std::string relative = file_name(subfolder, name, extension, hash_of(bytes));
   std::error_code error;
-  if (std::filesystem::file_size(path, error) == bytes.size() && !error) return relative;
-  make_folders(path.parent_path());
-  replace_file(path, bytes);
+  const bool is_there = std::filesystem::file_size(path_ / relative, error) == bytes.size() && !error;
+  if (!is_there && !files_.contains(relative)) files_.write(relative, bytes);
   return relative;
 }
 
@@ -59,12 +52,14 @@ std::string Folder::add(std::string_view subfolder, std::string_view name, std::
 std::string Folder::add(std::string_view subfolder, std::string_view name, const Image& image) {
   const int size[] = {image.width, image.height};
   const uint64_t hash = hash_of(bytes_of(image.pixels.data(), image.pixels.size()), hash_of(bytes_of(size, 2)));
-  const std::string relative = file_name(subfolder, name, "exr", hash);
-  make_folders((path_ / relative).parent_path());
-  write_image(path_ / relative, image, {});
+  std::string relative = file_name(subfolder, name, "exr", hash);
+  if (!files_.contains(relative)) files_.write(relative, image_bytes(relative, image, {}));
   return relative;
 }
 
-void Folder::finish(const std::string& xml) { replace_file(path_ / "scene.xml", bytes_of(xml.data(), xml.size())); }
+void Folder::finish(const std::string& xml) {
+  files_.write("scene.xml", xml);
+  files_.finish();
+}
 
 }  // namespace frond::mitsuba

@@ -11,6 +11,7 @@
 #include "scene/format/tokenizer.h"
 #include "scene/format/words.h"
 #include "spectra/tabulated.h"
+#include "system/file_uses.h"
 
 namespace frond {
 namespace {
@@ -195,6 +196,7 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
     if (word.find('\0') != std::string::npos) fail({}, "{}: a text without zero bytes is needed", spelled(p.name));
     if (word == "true" && !p.implied.empty()) word = p.implied;
     if (!allows(p, word)) refuse(word);
+    if (p.path != PathUse::none) check_file_name(word, spelled(p.name));
     if (p.kind == ArgumentKind::seed) {
       const char* end = word.data() + word.size();
       const auto parsed = std::from_chars(word.data(), end, value.whole);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <list>
 
 #include "report/text_output.h"
 #include "system/atomic_file.h"
+#include "system/file_uses.h"
 
 namespace frond {
 namespace {
@@ -33,39 +35,25 @@ std::string file_name(const JobParam& p, const std::string& word) {
 
 bool is_path(const JobParam& p, const std::string& word) { return p.path != PathUse::none && word != "-"; }
 
-/// Whether both names are of one file, which need not exist.
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (std::filesystem::equivalent(a, b, error) && !error) return true;
-  const auto full = [&error](const std::string& path) { return std::filesystem::weakly_canonical(path, error); };
-  return full(a) == full(b) && !error;
-}
-
-/// Throws InputError if an output cannot be written, is an input, or is also another output.
-void check_outputs(const JobRun& run, std::span<const JobParam> params) {
-  std::vector<std::pair<std::string_view, std::string>> used;  // parameters and their files
-  const auto each_file = [&](PathUse use, const auto& act) {
-    for (const JobParam& p : params)
-      if (p.path == use && run.args.given(p.name))
-        for (const std::string& path : run.args.words(p.name)) act(p, path);
+/// Notes the inputs among the arguments and plans the outputs. Throws InputError if an output cannot be written, is an
+/// input, or is also another output; the job's function plans the files that it writes besides.
+std::list<PlannedOutput> planned_outputs(const Arguments& args) {
+  const auto each_file = [&args](PathUse use, const auto& act) {
+    for (const JobParam* p : args.params())
+      if (p->path == use && args.given(p->name))
+        for (const std::string& path : args.words(p->name)) act(*p, path);
   };
-  each_file(PathUse::read, [&](const JobParam& p, const std::string& path) {
-    if (path != "-") used.emplace_back(p.name, path);
+  each_file(PathUse::read, [](const JobParam&, const std::string& path) {
+    if (path != "-") note_read(path, {});
   });
-  const size_t inputs = used.size();
+  std::list<PlannedOutput> outputs;
   each_file(PathUse::write, [&](const JobParam& p, const std::string& path) {
-    if (p.type == "FOLDER") return;
+    if (path == "-" && p.type == "FOLDER")
+      fail({}, "{}: a folder is needed, not standard output; if it is one, write ./-", args.spelled(p.name));
+    outputs.emplace_back(args.spelled(p.name), path);
     if (path != "-" && p.type == "FILE") check_replaceable(path);
-    for (size_t i = 0; i < used.size(); ++i) {
-      const auto& [name, other] = used[i];
-      if (path == "-" && other == "-")
-        fail({}, "only one of {} and {} can go to standard output", run.args.spelled(name), run.args.spelled(p.name));
-      if (path == "-" || other == "-" || !is_same_file(path, other)) continue;
-      if (i < inputs) fail({}, "{} would replace the input \"{}\"", run.args.spelled(p.name), other);
-      fail({}, "{} and {} write to the same file, \"{}\"", run.args.spelled(name), run.args.spelled(p.name), path);
-    }
-    used.emplace_back(p.name, path);
   });
+  return outputs;
 }
 
 /// Writes --csv and --json.
@@ -84,7 +72,8 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
 /// --csv and --json are written after the log's check, so that strict mode does not write them on warnings.
 Result run_job(const JobInfo& job, const JobRun& run) {
   run.args.check();
-  check_outputs(run, job.params);
+  const FileUses uses;
+  const std::list<PlannedOutput> outputs = planned_outputs(run.args);
   StrictLog& log = run.context.log();
   log.begin(run.args.declares("strict") && run.args.flag("strict"));
   Result result = job.run(run);

@@ -6,12 +6,21 @@
 
 namespace frond {
 
+KeptFile::KeptFile(Names names, std::stop_token stop, const Log& log)
+    : names_(std::move(names)),
+      stop_(std::move(stop)),
+      log_(log),
+      output_("the checkpoint", names_.checkpoint),
+      lock_output_("its lock", names_.finished.string() + ".lock"),
+      lock_(names_.finished) {}
+
 /// A complete result takes precedence over a checkpoint.
 std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
   std::error_code error;
   const auto& path = std::filesystem::exists(names_.finished, error) ? names_.finished : names_.checkpoint;
   if (!std::filesystem::exists(path, error)) return {};
   if (!resume) fail({}, "\"{}\" already exists: --resume continues from it; delete it to start again", path.string());
+  allow_reading(path);
   return path;
 }
 

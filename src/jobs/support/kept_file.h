@@ -8,6 +8,7 @@
 #include "core/log.h"
 #include "jobs/record/arguments.h"
 #include "render/checkpoint.h"
+#include "system/file_uses.h"
 
 namespace frond {
 
@@ -20,9 +21,8 @@ class KeptFile {
     std::filesystem::path checkpoint;  ///< path of a partial result; may equal `finished`
   };
 
-  /// Throws Busy if another process holds the lock.
-  KeptFile(Names names, std::stop_token stop, const Log& log)
-      : names_(std::move(names)), stop_(std::move(stop)), log_(log), lock_(names_.finished) {}
+  /// Throws Busy if another process holds the lock, InputError if the checkpoint is another file of the job.
+  KeptFile(Names names, std::stop_token stop, const Log& log);
 
   /// Returns the path of an earlier run's result, or nullopt. Throws InputError if there is one and `resume` is false.
   std::optional<std::filesystem::path> found(bool resume) const;
@@ -38,6 +38,7 @@ class KeptFile {
   Names names_;
   std::stop_token stop_;
   const Log& log_;
+  PlannedOutput output_, lock_output_;
   PartLock lock_;
 };
 

@@ -13,6 +13,7 @@
 #include "scene/format/words.h"
 #include "spectra/color/color_management.h"
 #include "spectra/color/color_space.h"
+#include "system/file_uses.h"
 
 namespace frond {
 namespace {
@@ -98,6 +99,7 @@ void RenderTask::read_text(const std::string& text, const std::string& name) {
 
 /// Symbolic links are resolved first; a folder that does not exist is no link.
 const std::string& RenderTask::film_file() const {
+  check_file_name(film_file_, "the scene's Film", film_where_);
   std::error_code error;
   const auto here = std::filesystem::canonical(".", error);
   const auto target = std::filesystem::weakly_canonical(here / film_file_, error);

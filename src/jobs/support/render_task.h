@@ -26,6 +26,7 @@ class RenderTask {
   /// Returns the film's file name. Throws InputError, at the film's directive, for one outside of the working folder: a
   /// scene of somebody else must not choose which file is replaced.
   const std::string& film_file() const;
+  const Location& film_where() const { return film_where_; }
 
   /// Selects the models of open leaves; a pilot ends at `deadline`. `output` may be nullptr; otherwise throws
   /// InputError first if the image cannot be written in its format.

@@ -4,41 +4,38 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/text_output.h"
 #include "spectra/color/color_space.h"
 #include "study/compare/report/assets.h"
 #include "study/compare/report/charts.h"
 #include "study/compare/report/html.h"
 #include "study/compare/report/tables.h"
 #include "study/compare/report/verdict.h"
-#include "system/file_bytes.h"
+#include "system/new_files.h"
 
 namespace frond::compare {
 namespace {
 
-std::string path_in(const std::filesystem::path& folder, const std::string& name) { return (folder / name).string(); }
-
-void write_charts(const std::filesystem::path& folder, const std::vector<ReportChart>& charts) {
+void write_charts(NewFiles& files, const std::vector<ReportChart>& charts) {
   const bool with_png = png_refusal().empty();
   for (const ReportChart& c : charts) {
     if (!c.chart) continue;
-    write_chart(path_in(folder, c.name + ".svg"), *c.chart);
-    if (with_png) write_chart(path_in(folder, c.name + ".png"), *c.chart);
+    files.write(c.name + ".svg", chart_svg(*c.chart));
+    if (with_png) files.write(c.name + ".png", chart_png(*c.chart));
   }
 }
 
-std::string figure(const std::filesystem::path& folder, const ReportChart& chart) {
+std::string figure(const ReportChart& chart) {
   if (!chart.chart) return "<p>There is nothing to draw: no error was seen.</p>\n";
-  const std::string svg = read_file_bytes(path_in(folder, chart.name + ".svg"), {});
+  const std::string svg = chart_svg(*chart.chart);
   return fmt::format(
       "<figure><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"><figcaption>{}</figcaption></figure>\n",
       html_text(chart.description), base64({reinterpret_cast<const unsigned char*>(svg.data()), svg.size()}),
       html_text(chart.caption));
 }
 
-std::string figures(const std::filesystem::path& folder, const std::vector<ReportChart>& charts) {
+std::string figures(const std::vector<ReportChart>& charts) {
   std::string html;
-  for (const ReportChart& chart : charts) html += figure(folder, chart);
+  for (const ReportChart& chart : charts) html += figure(chart);
   return html;
 }
 
@@ -107,13 +104,13 @@ std::string provenance(const Comparison& c) {
   return list + "</dl>";
 }
 
-std::string page(const std::filesystem::path& folder, const Comparison& c, const std::vector<ReportChart>& charts) {
+std::string page(const Comparison& c, const std::vector<ReportChart>& charts) {
   return filled(page_html, {{"title", html_text("Leaf models compared: " + c.scene)},
                             {"css", std::string(page_css)},
                             {"verdict", html_text(verdict(c))},
                             {"setting", setting(c)},
                             {"values", values_note(c.channels)},
-                            {"charts", figures(folder, charts)},
+                            {"charts", figures(charts)},
                             {"tables", tables_html(c)},
                             {"provenance", provenance(c)},
                             {"data", viewer_data(c)},
@@ -123,23 +120,18 @@ std::string page(const std::filesystem::path& folder, const Comparison& c, const
 }  // namespace
 
 void check_report_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  auto existing = std::filesystem::absolute(folder);
-  while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
-  if (!std::filesystem::is_directory(existing, error))
-    fail({}, "cannot write \"{}\": \"{}\" is a file, a folder is needed", folder.string(), existing.string());
-  check_chart(path_in(existing, "rms.svg"));
+  const NewFiles files(folder);
+  for (const char* name : {"rms.svg", "rms.png", "compare.csv", "compare.json", "index.html"}) files.check(name);
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& c, const ComparisonData& data) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail({}, "cannot make the folder {}: {}", folder.string(), error.message());
+  NewFiles files(folder);
   const std::vector<ReportChart> charts = charts_of(c);
-  write_charts(folder, charts);
-  write_text(path_in(folder, "compare.csv"), to_csv(data.tables[0], data.notes));
-  write_text(path_in(folder, "compare.json"), to_json(data.notes, data.facts, data.tables));
-  write_text(path_in(folder, "index.html"), page(folder, c, charts));
+  write_charts(files, charts);
+  files.write("compare.csv", to_csv(data.tables[0], data.notes));
+  files.write("compare.json", to_json(data.notes, data.facts, data.tables));
+  files.write("index.html", page(c, charts));
+  files.finish();
 }
 
 }  // namespace frond::compare

@@ -6,11 +6,11 @@
 
 namespace frond::compare {
 
-/// Throws InputError if the folder cannot be created or written. Leaves no files.
+/// Throws InputError if the folder, or a file of the report in it, cannot be written. Leaves no files.
 void check_report_folder(const std::filesystem::path& folder);
 
-/// Creates the folder and writes index.html, which is self-contained, the charts as SVG (also PNG if librsvg is
-/// available), and the data as CSV and JSON.
+/// Writes all or nothing: index.html, which is self-contained, the charts as SVG (also PNG if librsvg is available),
+/// and the data as CSV and JSON. Creates the folder if necessary.
 void write_report(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonData& data);
 
 }  // namespace frond::compare
