@@ -1,0 +1,39 @@
+# What the target frond alone has made can be installed, as README.md says of scripts/demo: the program with its man pages.
+# A build folder of its own, whose object files are copied from BUILD_DIR and not compiled again.
+file(REMOVE_RECURSE "${WORK_DIR}")
+set(build "${WORK_DIR}/build")
+set(prefix "${WORK_DIR}/prefix")
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${ARGN}: ${result}\n${output}")
+  endif()
+endfunction()
+# In place of the compiler: the words of Ninja's rules are -o FILE and -MF FILE.
+file(WRITE "${WORK_DIR}/copy" [=[#!/bin/sh
+from=$1; shift
+previous=
+for word; do
+  case "$previous" in
+    -o) object=$word ;;
+    -MF) depends=$word ;;
+  esac
+  previous=$word
+done
+[ -e "$from/$object" ] || exec "$@"
+cp "$from/$object" "$object" && echo "$object:" >"$depends"
+]=])
+file(CHMOD "${WORK_DIR}/copy" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+file(STRINGS "${BUILD_DIR}/CMakeCache.txt" options
+     REGEX "^(CMAKE_BUILD_TYPE|CMAKE_CXX_COMPILER|CMAKE_CXX_FLAGS|FROND_INSTRUCTIONS|FROND_PRECOMPILED_HEADERS):")
+list(TRANSFORM options PREPEND "-D")
+run(${CMAKE_COMMAND} -S "${SOURCE_DIR}" -B "${build}" -G Ninja ${options} -DFROND_PYTHON=OFF -DFROND_TESTS=OFF -DFROND_BENCH=OFF
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=${WORK_DIR}/copy;${BUILD_DIR}")
+run(${CMAKE_COMMAND} --build "${build}" --target frond)
+run(${CMAKE_COMMAND} --install "${build}" --prefix "${prefix}")
+run("${prefix}/bin/frond" --version)
+file(GLOB pages "${prefix}/share/man/man1/frond-render.1*")
+if(NOT pages OR NOT EXISTS "${prefix}/share/bash-completion/completions/frond")
+  message(FATAL_ERROR "there is no man page or no completion in ${prefix}")
+endif()
+file(REMOVE_RECURSE "${WORK_DIR}")
