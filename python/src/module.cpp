@@ -14,7 +14,7 @@ PythonLog::~PythonLog() {
 }
 
 void PythonLog::warn(const Location& where, std::string_view message) const {
-  say("warning", where.text() + std::string(message));
+  say("warning", InputError(where, std::string(message)).what());
 }
 
 void PythonLog::say(const char* level, const std::string& text) const {

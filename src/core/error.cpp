@@ -3,8 +3,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
+
+#include "core/excerpt.h"
 
 namespace frond {
 
@@ -20,16 +21,6 @@ std::string shortened(const std::string& message) {
   constexpr size_t kMost = 4000, kEnd = 1000;
   if (message.size() <= kMost) return message;
   return message.substr(0, kMost - kEnd) + " ... " + message.substr(message.size() - kEnd);
-}
-
-/// Replaces control characters other than line ends and tabs: words of the input could clear a terminal or hide a
-/// message, and a zero byte would cut it short.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f) c = '?';
-  }
-  return text;
 }
 
 size_t edit_distance(std::string_view a, std::string_view b) {
@@ -50,7 +41,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 InputError::InputError(const Location& where, const std::string& message)
-    : std::runtime_error(printable(where.text() + shortened(message))) {}
+    : std::runtime_error(escaped(where.text() + shortened(with_short_quotes(message, where)))) {}
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   std::string_view best;

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "core/excerpt.h"
+
 namespace frond {
 
 namespace {
@@ -21,7 +23,7 @@ void print_to_stderr(std::string_view text) {
 }
 
 void ConsoleLog::info(std::string_view message) const {
-  if (!quiet_) print_to_stderr(InputError({}, std::string(message)).what());  // as messages of errors are printed
+  if (!quiet_) print_to_stderr(printable(message));
 }
 
 void ConsoleLog::warn(const Location& where, std::string_view message) const {

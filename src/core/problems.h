@@ -12,6 +12,7 @@ class InputErrors : public InputError {
  public:
   /// `messages` holds the first of `count` errors; the others were not stored.
   InputErrors(std::vector<std::string> messages, size_t count);
+  const char* what() const noexcept override { return what_.c_str(); }
   const std::vector<std::string>& messages() const { return messages_; }
   size_t count() const { return count_; }
   /// Returns up to `most` messages and a line with the number of the others; each line begins with `prefix`.
@@ -20,6 +21,7 @@ class InputErrors : public InputError {
  private:
   std::vector<std::string> messages_;
   size_t count_;
+  std::string what_;
 };
 
 /// Error that an earlier error may have caused: a name that is unknown because its definition could not be read.

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/excerpt.h"
+
 namespace frond {
 namespace {
 
@@ -69,7 +71,7 @@ int64_t count_channels(std::string_view list, const EncodedImage& file) {
   for (; channel && !channel->empty(); channel = take_text(list)) {
     if (!is_utf8(*channel)) file.refuse("the name of a channel is not UTF-8");
     if (number_at<uint64_t>(list, kSampling) != kEachPixel)
-      file.refuse("channel \"{}\" has no value at each pixel: it is subsampled", *channel);
+      file.refuse("channel \"{}\" has no value at each pixel: it is subsampled", excerpt(*channel, file.path));
     list.remove_prefix(std::min(kAfterName, list.size()));
     ++channels;
   }

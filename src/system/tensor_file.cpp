@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/excerpt.h"
+
 namespace frond {
 namespace {
 
@@ -62,7 +64,7 @@ TensorFile::TensorFile(std::string bytes, std::string name, Location where)
     need(reader.take(length) && reader.take(length, field.name) && reader.take(dimensions) && reader.take(field.type) &&
          reader.take(offset));
     if (field.type == 0 || field.type >= kBytes.size())
-      refuse(fmt::format("field \"{}\" has the unknown type {}", field.name, field.type));
+      refuse(fmt::format("field \"{}\" has the unknown type {}", excerpt(field.name, std::filesystem::path(name_)), field.type));
     // No product of the shape exceeds the size of the file, so that it cannot overflow.
     const size_t most = offset <= bytes_.size() ? (bytes_.size() - offset) / kBytes[field.type] : 0;
     bool fits = offset <= bytes_.size();
@@ -76,7 +78,7 @@ TensorFile::TensorFile(std::string bytes, std::string name, Location where)
     }
     if (!fits || field.count > most)
       refuse(
-          fmt::format("it is truncated: field \"{}\" ends after the {} bytes of the file", field.name, bytes_.size()));
+          fmt::format("it is truncated: field \"{}\" ends after the {} bytes of the file", excerpt(field.name, std::filesystem::path(name_)), bytes_.size()));
     field.bytes = std::string_view(bytes_).substr(offset, field.count * kBytes[field.type]);
     fields_.push_back(std::move(field));
   }
@@ -103,7 +105,7 @@ std::vector<float> TensorFile::numbers(const Field& field, float least) const {
   for (const float value : values)
     if (!std::isfinite(value) || value < least)
       refuse(fmt::format(
-          "field \"{}\" contains {}; {}", field.name, value,
+          "field \"{}\" contains {}; {}", excerpt(field.name, std::filesystem::path(name_)), value,
           std::isfinite(value) ? fmt::format("numbers from {} are allowed", least) : "finite numbers are needed"));
   return values;
 }

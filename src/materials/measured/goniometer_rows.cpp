@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/excerpt.h"
 #include "core/spectrum.h"
 #include "system/csv_fields.h"
 
@@ -87,7 +88,8 @@ class Header {
     const auto& [material, where] = fields[at_[kMaterial]];
     if (material_.empty()) material_ = material;
     if (material != material_)
-      fail(where, "the file has measurements of {} and {}; keep the rows of one", material_, material);
+      fail(where, "the file has measurements of {} and {}; keep the rows of one", excerpt(material_, where),
+           excerpt(material, where));
   }
 
   size_t count_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/excerpt.h"
+
 namespace frond {
 
 namespace fs = std::filesystem;
@@ -19,11 +21,18 @@ std::optional<fs::path> existing(const fs::path& path) {
   return fs::equivalent(path, normal, error) ? normal : fs::canonical(path, error);
 }
 
-}  // namespace
+/// Whether the file, wherever links lead, lies outside the folder.
+bool is_outside(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(file, error);
+  const fs::path real_folder = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+  return std::ranges::mismatch(real_folder, real).in1 != real_folder.end();
+}
 
 /// Candidates are tried in order: first with the name as written, then with slashes for backslashes.
-fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
+fs::path found(const SceneSettings& scene, const std::string& name, const Location& where) {
   if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
+  const auto& files = scene.files;
   std::vector<fs::path> folders;
   const bool is_of_command_line = where.line == 0;
   if (!files.empty() && !is_of_command_line) folders.push_back(files.front().parent_path());
@@ -36,6 +45,17 @@ fs::path SceneSettings::resolve(const std::string& name, const Location& where) 
     for (const fs::path& folder : folders)
       if (const auto path = existing(folder / spelling)) return *path;
   return (folders.front() / name).lexically_normal();
+}
+
+}  // namespace
+
+/// The scene's folder is that of its main file. What the command line names is the user's own, wherever it lies.
+fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
+  fs::path path = found(*this, name, where);
+  if (!where.file || where.line == 0) return path;
+  const fs::path& main = files.empty() ? fs::path(*where.file) : files.front();
+  if (is_outside(main.parent_path(), path)) mark_foreign(path);
+  return path;
 }
 
 }  // namespace frond

@@ -6,6 +6,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/excerpt.h"
+
 namespace frond {
 namespace {
 
@@ -244,6 +246,13 @@ constexpr std::string_view kOfPbrt2[] = {"AreaLight",        "Exterior", "Interi
                                          "Renderer",         "Search",   "SearchPath",  "SurfaceIntegrator",
                                          "VolumeIntegrator", "Volume",   "VolumeRegion"};
 
+/// Returns the directive that a word was probably meant to be, or an empty text.
+std::string_view nearest_directive(const Token& word) {
+  std::vector<std::string_view> names{"Include", "Import"};
+  for (const DirectiveEntry& entry : kDirectives) names.push_back(entry.name);
+  return nearest(word.text.substr(0, 80), names);
+}
+
 /// Recognizes files of older versions of pbrt, and numbers that follow a complete list.
 [[noreturn]] void fail_unknown(const Token& token, const Location& where) {
   if (token.kind != Kind::word || parse_number(token.text))
@@ -255,9 +264,7 @@ constexpr std::string_view kOfPbrt2[] = {"AreaLight",        "Exterior", "Interi
          "{}: this is a file for pbrt-v2 or older; it has to become one for pbrt-v3 by hand (Integrator in place of "
          "SurfaceIntegrator and Renderer), then for pbrt-v4 by \"pbrt --upgrade\"",
          token.text);
-  std::vector<std::string_view> names{"Include", "Import"};
-  for (const DirectiveEntry& entry : kDirectives) names.push_back(entry.name);
-  const std::string_view match = nearest(token.text.substr(0, 80), names);
+  const std::string_view match = nearest_directive(token);
   if (match.empty()) fail(where, "unknown directive {}", token.shown());
   fail(where, "unknown directive {}; did you mean {}?", token.shown(), match);
 }
@@ -287,6 +294,14 @@ bool is_directive(std::string_view word) {
   token.kind = Kind::word;
   token.text = word;
   return word == "Include" || word == "Import" || find_directive(token);
+}
+
+void check_begins_scene(const Token& first, const Location& where) {
+  const bool is_old = first.text == "WorldEnd" || std::ranges::find(kOfPbrt2, first.text) != std::end(kOfPbrt2);
+  if (first.kind == Kind::word && (is_old || is_directive(first.text) || !nearest_directive(first).empty())) return;
+  constexpr size_t kMostShown = 8;
+  fail(where, "this is no scene file: it begins with \"{}{}\", which is no directive",
+       escaped(first.text.substr(0, kMostShown)), first.text.size() > kMostShown ? "..." : "");
 }
 
 /// Throws InputError for a directive in the wrong block.

@@ -82,6 +82,7 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
          kMostFiles, kMostBytes >> 30);
   }
   Tokenizer tokens(is_gzip(bytes) ? unpacked : bytes, name, outer);
+  if (!open_files_.empty() && !tokens.at_end()) check_begins_scene(tokens.peek(), tokens.where(tokens.peek()));
   DirectiveContext context{tokens, parameters_, builder_, log_};
   open_files_.push_back({path, real_path(path)});
   while (!limit_reached_ && !tokens.at_end()) {

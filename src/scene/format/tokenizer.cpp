@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "core/excerpt.h"
+
 namespace frond {
 namespace {
 
@@ -50,13 +52,8 @@ void check_is_text(std::string_view text, const std::shared_ptr<const std::strin
 
 }  // namespace
 
-/// At most 40 characters, control characters replaced.
 std::string Token::shown() const {
-  constexpr size_t kLongest = 40;
-  std::string shown(text.substr(0, kLongest));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }, '?');
-  if (text.size() > kLongest) shown += "...";
+  const std::string shown = excerpt(text, from->where(*this));
   switch (kind) {
     case Kind::end:
       return "the end of the file";

@@ -21,7 +21,7 @@ struct Token {
   std::string_view text;
   const Tokenizer* from = nullptr;  ///< tokenizer of the file that contains the token
 
-  /// Returns the token as error messages quote it.
+  /// Returns the token as error messages quote it (core/excerpt.h).
   std::string shown() const;
 };
 

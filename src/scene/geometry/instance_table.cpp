@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "core/excerpt.h"
 #include "scene/geometry/npy.h"
 #include "system/file_bytes.h"
 
@@ -36,14 +37,14 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
     if (field.name.empty() && field.type.find('V') != std::string::npos) continue;  // padding of a record
     if (field.type != kNumber)
       fail(where, "{}: \"{}\" holds {}: numbers are {} (numpy.float32)", path.string(),
-           field.name.empty() ? "the array" : field.name, field.type, kNumber);
+           field.name.empty() ? "the array" : excerpt(field.name, path), excerpt(field.type, path), kNumber);
     if (is_map(field))
       found = true, map_offset_ = field.offset;
     else if (field.count() == 1 && !field.name.empty())
       columns_.push_back({field.name, field.offset, {INFINITY, -INFINITY}});
     else
       fail(where, "{}: \"{}\" has {} numbers in a row: \"transform\" has {}, all others have one", path.string(),
-           field.name, field.count(), kMapNumbers);
+           excerpt(field.name, path), field.count(), kMapNumbers);
   }
   if (!found)
     fail(where, "{}: no field \"transform\" of {} numbers: the three rows of a matrix, four numbers each",

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/excerpt.h"
 #include "scene/shapes/ply_header.h"
 #include "scene/shapes/ply_source.h"
 #include "system/file_bytes.h"
@@ -188,13 +189,14 @@ class BodyReader {
   /// Throws InputError for a count that the rest of the file cannot contain.
   void skip_values(const PlyProperty& p, double count) {
     if (!(count >= 0 && count <= static_cast<double>(source_.bytes_left())) || count != std::floor(count))
-      fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", p.name, count));
+      fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", excerpt(p.name, p.where),
+                           count));
     if (!source_.skip(p.type, static_cast<size_t>(count))) fail_row(source_.problem());
   }
 
   /// Throws InputError with element, row and position.
   [[noreturn]] void fail_row(const std::string& message) const {
-    source_.fail_here(fmt::format("{} {}: {}", element_->name, row_, message));
+    source_.fail_here(fmt::format("{} {}: {}", excerpt(element_->name, element_->where), row_, message));
   }
 
   Source& source_;

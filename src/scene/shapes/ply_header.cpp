@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/excerpt.h"
+
 namespace frond {
 namespace {
 
@@ -52,15 +54,7 @@ class HeaderLines {
   int line_ = 0;
 };
 
-constexpr size_t kLongestShown = 40;
-
-/// Text for messages: limited in length, other than printable ASCII replaced.
-std::string shown(std::string_view text) {
-  std::string result(text.substr(0, kLongestShown));
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return result;
-}
+constexpr size_t kLongestMeant = 40;  ///< of a word for which a similar one is searched
 
 /// Throws InputError unless the line has `count` words; `usage` describes them.
 void check_words(const std::vector<Word>& line, size_t count, std::string_view usage) {
@@ -75,19 +69,19 @@ PlyType type_of(const Word& word) {
                                          "int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
   const auto found = std::find(std::begin(kNames), std::end(kNames), word.text);
   if (found == std::end(kNames))
-    fail(word.where, "unknown type \"{}\"{}", shown(word.text),
-         suggestion(word.text.substr(0, kLongestShown), {std::begin(kNames), std::end(kNames)}));
+    fail(word.where, "unknown type \"{}\"{}", excerpt(word.text, word.where),
+         suggestion(word.text.substr(0, kLongestMeant), {std::begin(kNames), std::end(kNames)}));
   return static_cast<PlyType>((found - std::begin(kNames)) % 8);
 }
 
 PlyFormat format_of(const std::vector<Word>& line) {
   check_words(line, 3, "format, ascii or binary_little_endian or binary_big_endian, 1.0");
-  if (line[2].text != "1.0") fail(line[2].where, "version {} of the format is not 1.0", shown(line[2].text));
+  if (line[2].text != "1.0") fail(line[2].where, "version {} of the format is not 1.0", excerpt(line[2].text, line[2].where));
   constexpr std::string_view kNames[] = {"ascii", "binary_little_endian", "binary_big_endian"};
   const auto found = std::find(std::begin(kNames), std::end(kNames), line[1].text);
   if (found == std::end(kNames))
-    fail(line[1].where, "unknown format \"{}\"{}", shown(line[1].text),
-         suggestion(line[1].text.substr(0, kLongestShown), {std::begin(kNames), std::end(kNames)}));
+    fail(line[1].where, "unknown format \"{}\"{}", excerpt(line[1].text, line[1].where),
+         suggestion(line[1].text.substr(0, kLongestMeant), {std::begin(kNames), std::end(kNames)}));
   return static_cast<PlyFormat>(found - std::begin(kNames));
 }
 
@@ -97,7 +91,7 @@ PlyElement element_of(const std::vector<Word>& line) {
   uint64_t count = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
   if (error != std::errc() || end != digits.data() + digits.size())
-    fail(line[2].where, "\"{}\" is not a count", shown(digits));
+    fail(line[2].where, "\"{}\" is not a count", excerpt(digits, line[2].where));
   return {std::string(line[1].text), count, {}, line[0].where};
 }
 
@@ -106,7 +100,7 @@ PlyProperty property_of(const std::vector<Word>& line) {
   if (line.size() > 1 && line[1].text == "list") {
     check_words(line, 5, "property list, type of the length, type of the values, name");
     const PlyType count_type = type_of(line[2]);
-    if (!is_integer(count_type)) fail(line[2].where, "the length of a list is an integer, not {}", line[2].text);
+    if (!is_integer(count_type)) fail(line[2].where, "the length of a list is an integer, not {}", excerpt(line[2].text, line[2].where));
     return {std::string(line[4].text), type_of(line[3]), count_type, line[0].where};
   }
   check_words(line, 3, "property, its type, its name");
@@ -115,7 +109,7 @@ PlyProperty property_of(const std::vector<Word>& line) {
 
 void add_element(PlyHeader& header, PlyElement element) {
   for (const PlyElement& other : header.elements)
-    if (other.name == element.name) fail(element.where, "element \"{}\" is declared twice", shown(element.name));
+    if (other.name == element.name) fail(element.where, "element \"{}\" is declared twice", excerpt(element.name, element.where));
   header.elements.push_back(std::move(element));
 }
 
@@ -123,7 +117,7 @@ void add_property(PlyHeader& header, PlyProperty property) {
   if (header.elements.empty()) fail(property.where, "a property before any element");
   auto& properties = header.elements.back().properties;
   for (const PlyProperty& other : properties)
-    if (other.name == property.name) fail(property.where, "property \"{}\" is declared twice", shown(property.name));
+    if (other.name == property.name) fail(property.where, "property \"{}\" is declared twice", excerpt(property.name, property.where));
   properties.push_back(std::move(property));
 }
 
@@ -153,8 +147,8 @@ PlyHeader read_ply_header(std::string_view bytes, const std::shared_ptr<const st
     else if (keyword == "property")
       add_property(header, property_of(line));
     else
-      fail(where, "unknown header keyword \"{}\"{}", shown(keyword),
-           suggestion(keyword.substr(0, kLongestShown),
+      fail(where, "unknown header keyword \"{}\"{}", excerpt(keyword, where),
+           suggestion(keyword.substr(0, kLongestMeant),
                       {"format", "element", "property", "comment", "obj_info", "end_header"}));
   }
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/excerpt.h"
 #include "scene/format/tokenizer.h"
 #include "scene/shapes/ply_header.h"
 
@@ -125,8 +126,7 @@ class AsciiSource {
     if (!find_word()) return refuse(at_ == bytes_.size() ? "the file ends too early" : "the row ends too early");
     const auto number = parse_number(word_);
     if (!number)
-      return refuse(
-          fmt::format("a number is needed, {} was given", Token{.kind = Token::Kind::word, .text = word_}.shown()));
+      return refuse(fmt::format("a number is needed, {} was given", excerpt(word_, std::filesystem::path(*file_))));
     value = *number;
     at_ += word_.size();
     return true;
