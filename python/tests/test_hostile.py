@@ -27,6 +27,12 @@ import frond, numpy, logging, os, sys
 nan, inf = float("nan"), float("inf")
 SCENE = {SCENE!r}.replace("leaf_solved", "leaf_lambert")
 open("scene.pbrt", "w").write(SCENE)
+DEEP = "\\"integer maxdepth\\" 1048576\\n"
+ROOM = (f"Integrator \\"path\\" {{DEEP}} WorldBegin AreaLightSource \\"diffuse\\" Material \\"diffuse\\""
+        " \\"spectrum reflectance\\" [300 1 900 1] Shape \\"sphere\\" \\"float radius\\" 9")
+FOG = (f"Integrator \\"volpath\\" {{DEEP}} MakeNamedMedium \\"m\\" \\"string type\\" \\"homogeneous\\""
+       " \\"float sigma_a\\" 0 \\"float sigma_s\\" 1e9 MediumInterface \\"m\\" Camera \\"perspective\\" WorldBegin "
+       "LightSource \\"infinite\\" \\"spectrum L\\" \\"stdillum-D65\\"")
 SPECTRA = dict(wavelengths=list(range(400, 700, 20)), R=[0.1] * 15, T=[0.1] * 15)
 LIGHT = ("LightSource \\"distant\\" \\"point3 from\\" [0 0 0] \\"point3 to\\" [0.3 0 1]\\n"
          "LightSource \\"infinite\\" \\"spectrum L\\" \\"stdillum-D65\\"")
@@ -382,6 +388,8 @@ LONG = {
     "render_python": '[frond.register_material("slow", python_bsdf(f=lambda *_: __import__("time").sleep(0.02) or 0.1),'
                      ' session=session), session.loads(SCENE.replace("leaf_lambert", "slow").replace(" 16 ", " 512 ", 2))'
                      '.render(10**6)]',
+    "load_reflections": 'session.loads(ROOM)',
+    "load_scatterings": 'session.loads(FOG)',
     "leaf_table": 'frond.leaf_table("leaf_solved", range(400, 2400), session=session)',
     "table": 'frond.table(specimen="maize", method="montecarlo", wavelengths=551, rays=10**9, output="t.csv",'
              ' session=session)',

@@ -6,34 +6,49 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include "core/stop.h"
 
 namespace frond {
 namespace {
 
-thread_local const std::stop_token* current_stop = nullptr;
+thread_local StopState current;
 
-/// Lets a thread of a loop observe the token of the thread that started the loop.
+/// Lets a thread of a loop observe what the thread that started the loop observes.
 class SharedStop {
  public:
-  explicit SharedStop(const std::stop_token* token) : outer_(current_stop) { current_stop = token; }
-  ~SharedStop() { current_stop = outer_; }
+  explicit SharedStop(const StopState& stop) : outer_(std::exchange(current, stop)) {}
+  ~SharedStop() { current = outer_; }
   SharedStop(const SharedStop&) = delete;
   SharedStop& operator=(const SharedStop&) = delete;
 
  private:
-  const std::stop_token* outer_;
+  StopState outer_;
 };
 
 }  // namespace
 
-StopScope::StopScope(std::stop_token token) : token_(std::move(token)), outer_(current_stop) {
-  if (token_.stop_possible()) current_stop = &token_;
+StopState current_stop() { return current; }
+
+StopScope::StopScope(std::stop_token token) : token_(std::move(token)), outer_(current.token) {
+  if (token_.stop_possible()) current.token = &token_;
 }
 
-StopScope::~StopScope() { current_stop = outer_; }
+StopScope::~StopScope() { current.token = outer_; }
 
-bool is_stop_requested() { return current_stop && current_stop->stop_requested(); }
+DeadlineScope::DeadlineScope(std::optional<std::chrono::steady_clock::time_point> deadline) : outer_(current.deadline) {
+  if (deadline) current.deadline = std::min(outer_, *deadline);
+}
+
+DeadlineScope::~DeadlineScope() { current.deadline = outer_; }
+
+UnstoppableScope::UnstoppableScope() : outer_(std::exchange(current, {})) {}
+
+UnstoppableScope::~UnstoppableScope() { current = outer_; }
+
+bool is_stop_requested() { return current.is_requested(); }
 
 void check_stop() {
   if (is_stop_requested()) throw Stopped();
@@ -46,7 +61,7 @@ void ThreadPool::for_each(int64_t count, const std::function<void(int64_t, int)>
   std::atomic<int64_t> next{0};
   std::mutex mutex;
   std::exception_ptr error;
-  const std::stop_token* const stop = current_stop;
+  const StopState stop = current;
   const auto work = [&](int worker) {
     const SharedStop shared(stop);
     try {

@@ -82,6 +82,7 @@ void shoot(const LitMaterial& lit, int64_t first, int64_t last, Tally& total, co
       tally.clear();
       RayBlock block(lit, start / kRaysPerBlock + i);
       for (int64_t left = std::min(kRaysPerBlock, end - start - i * kRaysPerBlock); left > 0;) {
+        check_stop();
         const auto batch = block.next(left);
         for (const Scattered& ray : batch) tally.add(ray);
         left -= static_cast<int64_t>(batch.size());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/stop.h"
+
 namespace frond {
 namespace {
 
@@ -26,7 +28,9 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
   constexpr double kLeast = 1e-3;  // of the mean: a light without luminance may emit in the infrared
   std::vector<double> powers(lights_.size(), 0);
   double total = 0;
+  StopPoll poll;
   for (size_t i = 0; i < lights_.size(); ++i) {
+    poll();
     const double share = lights_[i]->competing_share();
     if (share == 0) continue;
     ++count_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/stop.h"
+
 namespace frond {
 namespace {
 
@@ -109,10 +111,14 @@ size_t partition(std::span<Entry> entries) {
     const float place = (middle(e.bounds)[axis] - low[axis]) / extent[axis];
     return std::clamp(int(place * kBins), 0, kBins - 1);
   };
+  StopPoll poll;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(extent[axis] > 0)) continue;
     std::array<Cluster, kBins> bins;
-    for (const Entry& e : entries) bins[size_t(bin_of(e, axis))].add({e.bounds, e.power, 1});
+    for (const Entry& e : entries) {
+      poll();
+      bins[size_t(bin_of(e, axis))].add({e.bounds, e.power, 1});
+    }
     for (int cut = 1; cut < kBins; ++cut) {
       Cluster before, after;
       for (int i = 0; i < kBins; ++i) (i < cut ? before : after).add(bins[size_t(i)]);
@@ -140,6 +146,7 @@ LightTree::LightTree(std::vector<Entry> entries) {
 }
 
 uint32_t LightTree::build(std::span<Entry> entries, uint64_t trail, int depth) {
+  check_stop();
   constexpr int kBalanced = 32;  // deeper nodes are split in halves, so that paths fit into 64 bits
   const auto place = uint32_t(nodes_.size());
   nodes_.emplace_back();

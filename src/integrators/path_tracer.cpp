@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
 #include "core/sampling.h"
 #include "integrators/lane_set.h"
 #include "integrators/path_parts.h"
@@ -46,7 +47,11 @@ class PathTracer final : public Tracer {
   /// Traces paths from their second vertex on.
   void follow(LaneSet alive) {
     if (record_) part_ = &record_->scattered[size_t(branch_)];
-    for (vertex_ = 1; !alive.empty(); ++vertex_) alive = advance(meet(alive));
+    constexpr int kPolled = 64;  // vertices
+    for (vertex_ = 1; !alive.empty(); ++vertex_) {
+      if (vertex_ % kPolled == 0) check_stop();
+      alive = advance(meet(alive));
+    }
     part_ = nullptr;
   }
 

@@ -20,6 +20,7 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
       ray.t_max = rest * kBeforeLight;
     }
     ++rays;
+    poll_();
     const bool is_hit = world_.intersect(ray, hash_key(key, uint64_t(passed)), point);
     if (is_hit) {
       arena.reset();
@@ -69,7 +70,7 @@ bool ShadowRay::pass_medium(const Ray& ray, RandomStream& rng) {
     return true;
   };
   const float u = rng.uniform();
-  if (!track(*medium_, ray, lambda_, h, u, rng, t, collide)) return false;
+  if (!track(*medium_, ray, lambda_, h, u, rng, poll_, t, collide)) return false;
   if (!(t[h] > 0)) return false;
   path_.multiply(t * (1 / t[h]), t * (1 / t[h]), t * (1 / t[h]));
   return true;

@@ -22,12 +22,13 @@ class ShadowRay {
     Vec3 p, offset;
   };
 
-  /// `time`: of the path's rays.
-  ShadowRay(const World& world, const SampledWavelengths& lambda, int hero, float time)
+  /// `time`: of the path's rays. `poll` counts rays and null collisions.
+  ShadowRay(const World& world, const SampledWavelengths& lambda, int hero, float time, StopPoll& poll)
       : world_(world),
         lambda_(lambda),
         path_{SampledSpectrum(1), SampledSpectrum(1), SampledSpectrum(1), hero},
-        time_(time) {}
+        time_(time),
+        poll_(poll) {}
 
   void begin(const Origin& origin, const Medium* medium) {
     origin_ = origin;
@@ -47,6 +48,7 @@ class ShadowRay {
   Origin origin_{};
   const Medium* medium_ = nullptr;
   float time_;
+  StopPoll& poll_;
 };
 
 }  // namespace frond

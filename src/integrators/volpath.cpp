@@ -63,6 +63,7 @@ class VolPathTracer final : public Tracer {
     begin();
     SurfacePoint point;
     for (vertex_ = 0; vertex_ - depth_ < kMostPassed; ++vertex_) {
+      poll_();
       key_ = hash_key(bundle_->keys[lane_], uint64_t(vertex_));
       arena_.reset();
       at_ = nullptr;
@@ -144,7 +145,7 @@ class VolPathTracer final : public Tracer {
       passage = Passage::ended;
       return false;
     };
-    if (!track(*medium_, ray, lambda_, path_.hero, number(Number::distance), rng, t, collide)) return passage;
+    if (!track(*medium_, ray, lambda_, path_.hero, number(Number::distance), rng, poll_, t, collide)) return passage;
     const float density = t[path_.hero];
     if (!(density > 0)) return Passage::ended;
     // Shadow rays pass a homogeneous medium with probability 1, others without a collision (ShadowRay).
@@ -261,7 +262,7 @@ class VolPathTracer final : public Tracer {
     const auto sample = light->sample_competing(place.p, on_light, lambda_);
     if (!sample || sample->radiance.is_black()) return;
     if (!is_possible(*sample)) return blame({PlugInFault::Kind::light, uint32_t(light->index())});
-    ShadowRay shadow(world_, lambda_, path_.hero, ray_.time);
+    ShadowRay shadow(world_, lambda_, path_.hero, ray_.time, poll_);
     const Scattered scattered = scatter(*sample, shadow);
     if (scattered.value.is_black()) return;
     if (!shadow.trace(*sample, of(Use::shadow_ray), shadow_arena_, bundle_->traced)) return;
@@ -340,6 +341,7 @@ class VolPathTracer final : public Tracer {
   size_t lane_ = 0;                   ///< of the bundle
   const SurfacePoint* at_ = nullptr;  ///< surface whose plug-ins are called
   Arena arena_, shadow_arena_;
+  StopPoll poll_;  ///< counts rays and null collisions
   // State of the path.
   int vertex_ = 0, depth_ = 0;
   uint64_t key_ = 0;

@@ -211,7 +211,6 @@ void warn_where_busy(const Log& log) {
 
 /// Times all materials first, on one thread, and estimates their variances afterwards on all threads.
 Result bench(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   check_chart_param(run, "plot");
   const TimedMaterials materials(run);
   if (run.args.given("plot")) check_bench_chart(materials.count(), materials.angles());

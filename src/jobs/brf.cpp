@@ -7,6 +7,7 @@
 
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
+#include "jobs/support/time_limit.h"
 #include "radiometry/brf_comparison.h"
 #include "render/parts/part_file.h"
 #include "report/brf_chart.h"
@@ -97,8 +98,8 @@ RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* 
 }
 
 /// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
-std::optional<BrfMeasurement> measure(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
-  RenderControl control = run.control_until(run.args.real("time-limit"));
+std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, const BrfMeter& meter,
+                                      const KeptFile* kept) {
   // A refinement starts with few samples and doubles them; each band needs at least one sample.
   constexpr uint64_t kFirst = 64;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
@@ -123,7 +124,8 @@ std::optional<BrfMeasurement> measure(const JobRun& run, const BrfMeter& meter, 
   if (kept) kept->keep(end != RefineEnd::stopped, false, write);
   if (end == RefineEnd::stopped) return {};
   if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
-    fail({}, "{}: the time limit ended before every direction was measured", run.args.spelled("time-limit"));
+    fail(scene_file(run.args), "{}: the time limit ended before every direction was measured",
+         run.args.spelled("time-limit"));
   return meter.read(part.film);
 }
 
@@ -209,11 +211,15 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
            model.text);
     SceneDescription with_model = description;
     apply_overrides({.swaps = {{"*", model.material}}}, with_model, run.session().registry(), run.log());
-    auto meter = std::make_unique<BrfMeter>(run.session(), std::move(with_model), request,
-                                            first ? &first->scene().scene() : nullptr);
+    const RenderControl control = run.control_until(run.args.real("time-limit"));  // of each model
+    const auto load = [&] {
+      return std::make_unique<BrfMeter>(run.session(), std::move(with_model), request,
+                                        first ? &first->scene().scene() : nullptr);
+    };
+    auto meter = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
     run.context.log().check();
     const double start = cpu_seconds();
-    auto measurement = measure(run, *meter, nullptr);
+    auto measurement = measure(run, control, *meter, nullptr);
     if (!measurement) throw Stopped();
     warn_of_time_limit(run, measurement->paths, measurement->relative_error());
     ModelMeasurement result{model, *std::move(measurement)};
@@ -242,11 +248,16 @@ Result brf(const JobRun& run) {
   if (run.args.given("compare")) return run_comparison(run, request);
   std::optional<KeptFile> kept;
   if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
-  std::optional<StopScope> loading(std::in_place, run.control.stop);
-  const BrfMeter meter(run.session(), described_scene(run), request);
-  loading.reset();
+  const RenderControl control = run.control_until(run.args.real("time-limit"));
+  Location where = scene_file(run.args);
+  const auto load = [&] {
+    SceneDescription description = described_scene(run);
+    if (description.integrator.where.file) where = description.integrator.where;
+    return std::make_unique<const BrfMeter>(run.session(), std::move(description), request);
+  };
+  const auto meter = within_time_limit(run, control, load, [&where] { return where; });
   run.context.log().check();
-  const auto measured = measure(run, meter, kept ? &*kept : nullptr);
+  const auto measured = measure(run, control, *meter, kept ? &*kept : nullptr);
   if (!measured) {
     if (kept) kept->report_stop();
     return {.stopped = true};

@@ -91,7 +91,6 @@ Result canopy(const JobRun& run) {
   InstanceWriter writer(output, leaves, names);
   LeafPlacer placer(canopy);
   std::vector<float> values(names.size());
-  const StopScope stop(run.control.stop);
   for (uint64_t leaf = 0; leaf < leaves; ++leaf) {
     check_stop();
     writer.add(placer.place(values), values);

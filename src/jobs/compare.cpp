@@ -151,7 +151,6 @@ std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& st
 
 /// The job: renders reference and candidates, evaluates the errors, and writes the report.
 Result compare_models(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   const Arguments& args = run.args;
   const auto start = std::chrono::steady_clock::now();
   const Setting& setting = args.flag("quick") ? kQuick : kFull;

@@ -105,7 +105,6 @@ ConformReport examine_material(const JobRun& run) {
 
 /// The job. The map is drawn before the report is returned, so that a failure to draw is an error.
 Result conform(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   constexpr int kBroken = 2;
   check_chart_param(run, "map");
   const ConformReport report = examine_material(run);

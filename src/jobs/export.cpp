@@ -121,7 +121,6 @@ Result export_scene(const JobRun& run) {
 
 /// The job: prepares the material in groups of wavelengths as the format requests them.
 Result export_material(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   const Arguments& args = run.args;
   const bool is_scene = args.text("format") == kMitsuba;
   check_options(args, is_scene);

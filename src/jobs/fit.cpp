@@ -338,7 +338,6 @@ Result fit_all(const JobRun& run) {
 
 /// The job: fits the leaf, and writes scene file, chart and tables.
 Result fit(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   const Arguments& args = run.args;
   check_chart_param(run, "plot");
   if (!args.given("file") && !args.given("data"))

@@ -8,6 +8,7 @@
 
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
+#include "jobs/support/time_limit.h"
 #include "radiometry/photons.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"
@@ -144,6 +145,7 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
   const std::chrono::duration<double> interval(checkpoint_seconds(run.args));
   return [&run, &meter, &kept, interval, last = Clock::now()]() mutable {
     if (Clock::now() - last < interval) return;
+    const UnstoppableScope whole;
     try {
       meter.save(kept.checkpoint());
     } catch (const InputError& error) {
@@ -154,8 +156,8 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
 }
 
 /// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
-std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, const KeptFile* kept) {
-  const RenderControl control = run.control_until(run.args.real("time-limit"));
+std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& control, FluxMeter& meter,
+                                       const KeptFile* kept) {
   // A refinement starts with few paths and doubles them.
   constexpr uint64_t kFirst = 1 << 16;
   const double rms = run.args.real("rms");
@@ -178,7 +180,8 @@ std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, cons
       },
       [&] { return measurement.emplace(meter.read()).error(); });
   if (end != RefineEnd::stopped && meter.paths() == 0)
-    fail({}, "{}: the time limit ended before any light path was traced", run.args.spelled("time-limit"));
+    fail(scene_file(run.args), "{}: the time limit ended before any light path was traced",
+         run.args.spelled("time-limit"));
   if (kept) kept->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
   if (end == RefineEnd::stopped) return {};
   return measurement ? std::move(measurement) : meter.read();
@@ -257,11 +260,14 @@ Result flux(const JobRun& run) {
                             .wavelengths = wavelengths_text(run.args),
                             .by_instance = is_by_instance,
                             .keeps_depth = run.args.given("integrator")};
-  std::optional<StopScope> loading(std::in_place, run.control.stop);
-  SceneDescription description = described_scene(run);
-  if (!irradiance) check_physical(description, run);
-  FluxMeter meter(run.session(), std::move(description), request);
-  loading.reset();
+  const RenderControl control = run.control_until(run.args.real("time-limit"));
+  const auto load = [&] {
+    SceneDescription description = described_scene(run);
+    if (!irradiance) check_physical(description, run);
+    return std::make_unique<FluxMeter>(run.session(), std::move(description), request);
+  };
+  const auto loaded = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
+  FluxMeter& meter = *loaded;
   run.context.log().check();
   const auto photons = photon_weights(meter, irradiance);
   // The default wavelengths have no PAR, so that this is an error only where photons are asked for.
@@ -272,7 +278,7 @@ Result flux(const JobRun& run) {
     if (run.args.given("irradiance")) fail({}, "{}: {}", run.args.spelled("irradiance"), needed);
     run.log().info(needed);
   }
-  auto measured = measure(run, meter, kept ? &*kept : nullptr);
+  auto measured = measure(run, control, meter, kept ? &*kept : nullptr);
   if (!measured) {
     if (kept) kept->report_stop();
     return {.stopped = true};

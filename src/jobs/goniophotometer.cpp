@@ -132,7 +132,6 @@ GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& 
 
 /// The job. Charts are checked before the first ray.
 Result goniophotometer(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   check_chart_param(run, "plot");
   check_chart_param(run, "map");
   const DetectorSphere sphere = sphere_of(run.args);

@@ -9,6 +9,7 @@
 #include "jobs/support/kept_file.h"
 #include "jobs/support/render_task.h"
 #include "jobs/support/render_views.h"
+#include "jobs/support/time_limit.h"
 #include "render/checkpoint.h"
 #include "render/film/adaptive.h"
 #include "render/film/error_tail.h"
@@ -127,7 +128,8 @@ class SceneRender {
   /// Appends the render's statistics to the table of the result, and to `json`.
   void render(Result& result, std::vector<nlohmann::ordered_json>& json) {
     try {
-      prepare();
+      within_time_limit(
+          run_, limit(), [this] { prepare(); }, [this] { return where(); });
     } catch (const InputError& error) {
       if (!run_.args.flag("strict")) throw;
       Problems problems;  // warnings so far are errors too
@@ -141,6 +143,7 @@ class SceneRender {
     views_.begin(part.film, part.header.image, output_ ? output_->path() : run_.args.text("part"),
                  run_.context.log().target());
     fill(part);
+    const UnstoppableScope whole;  // a stop that comes now does not end the writing
     result.stopped = run_.control.stop.stop_requested();
     if (kept_)  // a complete image is written even if its checkpoint fails
       kept_->keep(!result.stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
@@ -151,6 +154,10 @@ class SceneRender {
   }
 
  private:
+  /// The front end's control, with the time limit.
+  RenderControl limit() const { return run_.control_until(run_.args.real("time-limit"), start_); }
+  Location where() const { return task_.where().file ? task_.where() : scene_file(run_.args); }
+
   /// Detects errors before the render: reads and builds the scene, checks outputs.
   void prepare() {
     task_.read(files_);
@@ -226,9 +233,7 @@ class SceneRender {
 
   /// Renders the samples that the part lacks.
   void fill(RenderPart& part) {
-    RenderControl control = run_.control;
-    if (run_.args.given("time-limit"))
-      control.deadline = run_.control_until(run_.args.real("time-limit"), start_).deadline;
+    RenderControl control = limit();
     std::optional<Checkpointer> checkpointer;
     if (kept_) {
       checkpointer.emplace(kept_->checkpoint(), checkpoint_seconds(run_.args), part, control.progress, run_.log());
@@ -247,7 +252,7 @@ class SceneRender {
     views_.finish_preview();
     const SampleCount samples = sample_count(part.film);
     if (output_ && samples.most == 0)
-      fail({}, "{}: the time limit ended before any sample was rendered", run_.args.spelled("time-limit"));
+      fail(where(), "{}: the time limit ended before any sample was rendered", run_.args.spelled("time-limit"));
     const Log& log = run_.log();
     uint64_t lost = part.film.not_finite();  // those of plug-ins have been reported by name
     for (const auto& [fault, count] : statistics_.faults) lost -= std::min(lost, count);

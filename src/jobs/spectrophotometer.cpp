@@ -93,7 +93,6 @@ void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vect
 
 /// The job. The chart is checked before the first ray.
 Result spectrophotometer(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   check_chart_param(run, "plot");
   // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;

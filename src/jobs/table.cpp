@@ -206,7 +206,6 @@ void refuse(const Arguments& args, std::initializer_list<std::string_view> names
 
 /// The job: selects the file format by material and extension.
 Result table(const JobRun& run) {
-  const StopScope stop(run.control.stop);
   const PluginText leaf = leaf_of(run);
   const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
   if (leaf.name != kSolved || !is_leaf_file) refuse(run.args, {"depths"}, "a .leaf file of leaf_solved");

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "core/random.h"
 #include "core/sampling.h"
+#include "core/stop.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/sums_file.h"
@@ -206,7 +208,9 @@ class FluxMeter::Sums {
 
   void trace(uint64_t first, uint64_t count) {
     const WavelengthStrategy& wavelengths = state_.scene().wavelengths();
+    constexpr uint64_t kPolled = 16;  // paths
     for (uint64_t i = first; i < first + count; ++i) {
+      if (i % kPolled == 0) check_stop();
       RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
       const SampledWavelengths lambda = wavelengths.sample_in_turn(i, random.uniform());
       record_.clear();
@@ -220,8 +224,13 @@ class FluxMeter::Sums {
       if (!state_.by_instance) continue;
       for (const auto& [instance, share] : record_.by_instance())
         for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
-          state_.by_instance->add(instance, lambda.band[lane], double(share.v[lane]));
+          absorbed_.push_back({instance, lambda.band[lane], double(share.v[lane])});
     }
+  }
+  /// Adds to the sums of instances, which have no block of their own: once the block counts.
+  void add_instances() {
+    for (const Absorbed& a : absorbed_) state_.by_instance->add(a.instance, a.band, a.share);
+    absorbed_ = {};
   }
 
  private:
@@ -239,7 +248,9 @@ class FluxMeter::Sums {
     Ray ray{to_float(on_target - d * distance_above(state_.scene(), t, -d.z)), light->direction};
     Lanes share = light->weight;
     const float full = kFull * share.max();
+    constexpr int kPolled = 256;
     for (int vertex = 0, depth = 0; vertex - depth <= kMostPassed; ++vertex) {
+      if (vertex % kPolled == kPolled - 1) check_stop();
       SurfacePoint point;
       if (!state_.scene().intersect(ray, hash_key(key, uint64_t(vertex)), point)) {
         record_.leave(ray.d.z > 0 ? kReflected : kTransmitted, share);
@@ -288,9 +299,16 @@ class FluxMeter::Sums {
     return {frame.to_world(s.direction), s.weight};
   }
 
+  struct Absorbed {
+    uint64_t instance;
+    size_t band;
+    double share;
+  };
+
   State& state_;
   Arena arena_;
   PathRecord record_;
+  std::vector<Absorbed> absorbed_;
 
  public:
   std::vector<Moment> moments;
@@ -333,24 +351,35 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
   constexpr uint64_t kBlocks = 256;
   RenderStatistics statistics;
   const double cpu = cpu_seconds();
-  for (uint64_t done = 0; done < paths;) {
-    if (control.stop.stop_requested()) break;
-    if (control.deadline && std::chrono::steady_clock::now() >= *control.deadline) break;
+  const StopScope stop(control.stop);
+  const DeadlineScope deadline(control.deadline);
+  for (uint64_t done = 0; done < paths && !control.is_over();) {
     const uint64_t round = std::min(paths - done, kBlocks * Sums::kBlock);
     const uint64_t blocks = (round + Sums::kBlock - 1) / Sums::kBlock;
     std::vector<std::unique_ptr<Sums>> sums(blocks);
-    pool.for_each(int64_t(blocks), [&](int64_t block, int) {
+    size_t complete = 0;  // number of the first blocks that are complete
+    std::mutex in_order;
+    const auto trace_block = [&](int64_t block, int) {
       const uint64_t begin = uint64_t(block) * Sums::kBlock;
       auto one = std::make_unique<Sums>(*state_);
       one->trace(state_->paths + begin, std::min(Sums::kBlock, round - begin));
+      const std::lock_guard lock(in_order);
       sums[size_t(block)] = std::move(one);
-    });
+      for (; complete < blocks && sums[complete]; ++complete) sums[complete]->add_instances();
+    };
+    try {
+      pool.for_each(int64_t(blocks), trace_block);
+    } catch (const Stopped&) {  // those before the first incomplete block count
+      if (!control.is_over()) throw;
+      sums.resize(complete);
+    }
+    const uint64_t traced = std::min(round, sums.size() * Sums::kBlock);
     for (const auto& one : sums) {
       for (size_t i = 0; i < state_->moments.size(); ++i) state_->moments[i] += one->moments[i];
       for (size_t i = 0; i < state_->seen.size(); ++i) state_->seen[i] += one->seen[i];
     }
-    state_->paths += round;
-    done += round;
+    state_->paths += traced;
+    done += traced;
     statistics.paths = done;
     statistics.cpu_seconds = cpu_seconds() - cpu;
     if (control.progress) control.progress->update(double(done) / double(paths), statistics);

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <new>
 
+#include "core/stop.h"
 #include "scene/scene.h"
 #include "system/machine.h"
 
@@ -58,15 +59,15 @@ class WorkItems {
   uint64_t block_, first_block_, blocks_;
 };
 
-/// Ends the loop over all items at once: skipping millions of items one by one would take a second.
-struct Ended : std::exception {};
+/// Items that are being rendered at the deadline may still be completed for this time: usually nothing is lost, and
+/// slow tiles are not left out more often than others.
+constexpr std::chrono::milliseconds kGrace{500};
 
 /// State of one thread.
 class Worker {
  public:
-  Worker(const RenderJob& job, const Film& film, std::stop_token stop)
+  Worker(const RenderJob& job, const Film& film)
       : job_(job),
-        stop_(std::move(stop)),
         format_(film.format()),
         tracer_(job.integrator.tracer(job.world)),
         bundle_{.sampler = job.sampler},
@@ -77,8 +78,8 @@ class Worker {
     if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 
-  /// Renders the samples of an item that `covered` lacks. Afterwards `tile` contains exactly these. Throws Ended, with
-  /// an incomplete tile, if a stop is requested: with a slow BSDF an item takes seconds.
+  /// Renders the samples of an item that `covered` lacks. Afterwards `tile` contains exactly these. Throws Stopped,
+  /// with an incomplete tile, if a stop is requested: with a slow BSDF an item takes seconds.
   void render(const WorkItem& item, const Coverage& covered) {
     tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
@@ -105,7 +106,7 @@ class Worker {
 
   void render_pixel(int x, int y, SampleRange samples) {
     for (uint64_t first = samples.begin / kBundle * kBundle; first < samples.end; first += kBundle) {
-      if (stop_.stop_requested()) throw Ended();
+      check_stop();
       const uint64_t begin = std::max(samples.begin, first), end = std::min(samples.end, first + kBundle);
       trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
       add(x, y, size_t(begin - first), size_t(end - first));
@@ -201,7 +202,6 @@ class Worker {
   static constexpr int kAlbedoSamples = 16;
 
   const RenderJob& job_;
-  const std::stop_token stop_;
   const FilmFormat& format_;
   const bool has_fixed_wavelengths_ = !job_.wavelengths.fixed_nm().empty();
   std::optional<SplatKernel> kernel_;  ///< set with splatting
@@ -237,15 +237,17 @@ WorkPlan plan_of(const Film& film, SampleRange samples) { return {film.sampled()
 RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control) {
   const Clock clock;
+  const StopScope stop(control.stop);
+  const DeadlineScope deadline(control.deadline ? std::optional(*control.deadline + kGrace) : std::nullopt);
   const WorkItems items(plan, film);
   std::vector<std::unique_ptr<Worker>> workers(size_t(pool.size()));
   RenderStatistics total;
   std::mutex mutex;
   int64_t done = 0;
   const auto render_item = [&](int64_t i, int thread) {
-    if (control.is_over()) throw Ended();
+    if (control.is_over()) throw Stopped();  // ends the loop over all items, which may be millions
     auto& worker = workers[size_t(thread)];
-    if (!worker) worker = std::make_unique<Worker>(job, film, control.stop);
+    if (!worker) worker = std::make_unique<Worker>(job, film);
     // No other thread adds samples of this item: its missing samples remain the same meanwhile.
     worker->render(items.item(i), film.coverage(items.tile(i)));
     film.merge(items.tile(i), worker->tile());
@@ -258,7 +260,8 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   };
   try {
     pool.for_each(items.count(), render_item);
-  } catch (const Ended&) {  // the film contains all completed items
+  } catch (const Stopped&) {  // the film contains all completed items, and nothing of the others
+    if (!control.is_over()) throw;
   }
   clock.stop(total);
   if (control.progress) control.progress->finish();

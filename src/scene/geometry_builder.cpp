@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "core/stop.h"
 #include "scene/format/plugin_text.h"
 
 namespace frond {
@@ -61,7 +62,9 @@ void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, 
   if (!mesh) return;
   std::set<std::array<std::array<float, 3>, 3>> faces;
   size_t doubles = 0;
+  StopPoll poll;
   for (const auto& t : (*mesh)->triangles) {
+    poll();
     std::array<std::array<float, 3>, 3> corners;
     for (size_t k = 0; k < 3; ++k) corners[k] = {(*mesh)->p[t[k]].x, (*mesh)->p[t[k]].y, (*mesh)->p[t[k]].z};
     std::sort(corners.begin(), corners.end());
@@ -145,7 +148,10 @@ class GeometryBuilder {
   /// Builds the shapes and instances of an object or of the world.
   ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const InstanceList& set) {
     ObjectParts parts;
-    for (const ShapeDescription& shape : shapes) problems_.attempt([&] { add(shape, parts); });
+    for (const ShapeDescription& shape : shapes) {
+      check_stop();
+      problems_.attempt([&] { add(shape, parts); });
+    }
     if (!set.moving.empty()) parts.instances.push_back(moving_instances(set.moving));
     if (set.objects.empty()) return parts;
     Instances instances{.table = std::make_shared<const InstanceTable>(set.maps)};

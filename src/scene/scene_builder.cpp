@@ -3,6 +3,7 @@
 
 #include "core/log.h"
 #include "core/problems.h"
+#include "core/stop.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
 #include "scene/lights/shape_emitter.h"
@@ -407,7 +408,9 @@ class SceneBuilder {
                                  "all of them together {} times as much",
                                  faces, faces));
     of_surface.by_primitive.resize(primitives_of(surface.geometry));
+    StopPoll poll;
     for (unsigned i = 0; i < of_surface.by_primitive.size();) {
+      poll();
       const Primitives face = face_of(surface.geometry, i);
       auto emitting = std::make_unique<ShapeEmitter>(surface, face);
       const AreaLight* const light = emitting->area() > 0 ? add_over(std::move(emitting)) : nullptr;

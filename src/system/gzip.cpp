@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/parallel.h"
+
 namespace frond {
 namespace {
 
@@ -39,6 +41,7 @@ std::string unpack_gzip(std::string_view bytes, const std::string& name, const L
   std::string text;
   std::vector<char> block(kBlock);
   while (true) {
+    check_stop();
     if (stream.avail_in == 0 && !bytes.empty()) {
       const size_t piece = std::min<size_t>(bytes.size(), std::numeric_limits<uInt>::max());
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib does not write there

@@ -117,6 +117,7 @@ void expect_bounded(const std::string& text, float reach = 3) {
 TEST(Media, MajorantsAreUpperBounds) {
   expect_bounded(R"("string type" "homogeneous")");
   expect_bounded(R"("string type" "cloud")");
+  expect_bounded(R"("string type" "cloud" "point3 p0" [0 0.6 0] "point3 p1" [1 1.3 1] "float density" 0.05)");
   std::string values, colors;
   RandomStream rng(3);
   for (int i = 0; i < 5 * 7 * 40; ++i) values += fmt::format(" {}", rng.uniform() < 0.7 ? 0 : rng.uniform());
@@ -136,6 +137,28 @@ TEST(Media, AGridHasItsValuesAtTheCentresOfCells) {
       EXPECT_NEAR(at({0.25f + 0.5f * float(x), 0.5f, (float(z) + 0.5f) / 3}), float(1 + x + 2 * z), 1e-5f);
   EXPECT_NEAR(at({0.5f, 0.5f, 0.5f}), 3.5f, 1e-5f);
   EXPECT_NEAR(at({0.f, 0.5f, 0.5f}), 1.5f, 1e-5f) << "half of the outermost value at a face";
+}
+
+TEST(Media, TooManyExpectedNullCollisionsAreRefusedWithTheirPlace) {
+  const auto refused = ::testing::AllOf(HasSubstr("s.pbrt:4:"), HasSubstr("more than 100000 null collisions"));
+  const std::string spike = R"("integer nx" 2 "point3 p0" [-2 -2 -2] "point3 p1" [2 2 2] )";
+  EXPECT_THAT(refusal_of(R"("string type" "cloud" "point3 p0" [-2 -2 -2] "point3 p1" [2 2 2] "float density" 0
+    "float sigma_s" 1e9 "float sigma_a" 0)"),
+              refused);
+  EXPECT_THAT(refusal_of(R"("string type" "uniformgrid" "float density" [1e-6 1e30] "float sigma_a" 0 )" + spike),
+              refused);
+  EXPECT_THAT(refusal_of(R"("string type" "rgbgrid" "rgb sigma_s" [0 0 0 1e20 1e20 1e20] )" + spike), refused);
+}
+
+TEST(Media, DenseOrThinMediaAreNotRefused) {
+  EXPECT_EQ(refusal_of(R"("string type" "uniformgrid" "float density" 1e30)"), "") << "all collisions are real";
+  EXPECT_EQ(refusal_of(R"("string type" "uniformgrid" "integer nx" 2 "float density" [0 1e3])"), "");
+  EXPECT_EQ(refusal_of(R"("string type" "cloud" "float sigma_s" 1e3)"), "");
+  EXPECT_EQ(refusal_of(R"("string type" "homogeneous" "float sigma_s" 1e30)"), "");
+  EXPECT_EQ(refusal_of(R"("string type" "cloud" "point3 p0" [-2 1 -2] "point3 p1" [2 2 2] "float density" 0
+    "float sigma_s" 1e9)"),
+            "")
+      << "its majorant is that of an empty cloud";
 }
 
 TEST(Media, BadInputIsRefusedWithItsPlace) {

@@ -209,6 +209,26 @@ TEST_F(Choosing, TheDeadlineEndsAPilot) {
   EXPECT_THAT(choice_text(chosen->choice), HasSubstr("the time limit ended the pilot"));
 }
 
+/// Whatever the pilot does at that moment: it makes tables, or renders.
+TEST_F(Choosing, TheDeadlineEndsAPilotAtAnyMoment) {
+  const std::filesystem::path scene = folder_.write("scene.pbrt", kSmpte + two_leaves("\"float maxrms\" 1e-6", ""));
+  int out_of_time = 0;
+  for (const int milliseconds : {3, 30, 100, 200}) {
+    Session session(silent_log(), {.threads = 2});
+    SceneDescription description = session.read(scene);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
+    const auto chosen = choose_models({.session = session,
+                                       .description = description,
+                                       .samples = 1 << 20,
+                                       .is_question = true,
+                                       .deadline = deadline},
+                                      standard_ladder(session.registry()), silent_log());
+    ASSERT_TRUE(chosen);
+    out_of_time += chosen->choice.ground == Choice::Ground::no_time;
+  }
+  EXPECT_GT(out_of_time, 0);
+}
+
 /// A cheap model that is wrong stands at the foot of the ladder.
 TEST_F(Choosing, AWrongModelIsNotChosenHoweverCheap) {
   const MaterialInfo wrong = test::planted<test::GoodLambertian>("planted_wrong");

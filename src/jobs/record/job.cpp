@@ -76,7 +76,10 @@ Result run_job(const JobInfo& job, const JobRun& run) {
   const std::list<PlannedOutput> outputs = planned_outputs(run.args);
   StrictLog& log = run.context.log();
   log.begin(run.args.declares("strict") && run.args.flag("strict"));
-  Result result = job.run(run);
+  Result result = [&] {
+    const StopScope stop(run.control.stop);
+    return job.run(run);
+  }();
   log.check();
   if (!result.stopped) write_outputs(job, run, result);
   return result;

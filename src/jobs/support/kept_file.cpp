@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/stop.h"
 
 namespace frond {
 
@@ -24,9 +25,10 @@ std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
   return path;
 }
 
-/// The checkpoint is removed only after the complete result has been written.
+/// The checkpoint is removed only after the complete result has been written. A stop does not end the writing.
 void KeptFile::keep(bool is_complete, bool is_result,
                     const std::function<void(const std::filesystem::path&)>& write) const try {
+  const UnstoppableScope whole;
   write(is_complete ? names_.finished : names_.checkpoint);
   std::error_code ignored;  // a name that is too long, for example: then there is no checkpoint
   if (is_complete && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint, ignored);

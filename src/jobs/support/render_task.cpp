@@ -119,6 +119,8 @@ void RenderTask::apply_arguments() {
   if (args.flag("quick")) film = halved(film);
   film_file_ = film.filename;
   film_where_ = description_.film.where;
+  for (const Location& place : {film_where_, description_.integrator.where})
+    if (place.file) where_ = place;
   if (args.given("samples")) samples_ = range_of(args);
   std::vector<std::string> channels;
   if (const std::string text = args.text("channels"); !text.empty()) channels = split(text, ',');
@@ -138,7 +140,6 @@ void RenderTask::apply_arguments() {
 
 /// Channels are checked first, because the selection of models may take minutes.
 void RenderTask::choose(const ImageOutput* output, std::optional<std::chrono::steady_clock::time_point> deadline) {
-  const StopScope stop(run_.control.stop);
   Session& session = run_.session();
   if (output) output->check_channels(make_wavelengths(description_, session.registry())->film_space());
   auto chosen = choose::choose_for({.session = session,
@@ -154,7 +155,6 @@ void RenderTask::choose(const ImageOutput* output, std::optional<std::chrono::st
 
 /// Consumes the description: shapes may be large.
 void RenderTask::load(const ImageOutput* output) {
-  const StopScope stop(run_.control.stop);
   const Arguments& args = run_.args;
   scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
   if (pilot_)  // it was loaded without a word, and its lights are taken over

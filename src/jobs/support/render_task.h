@@ -28,6 +28,9 @@ class RenderTask {
   const std::string& film_file() const;
   const Location& film_where() const { return film_where_; }
 
+  /// Returns a place for errors of the whole scene: its integrator or film if it names one, else its file.
+  const Location& where() const { return where_; }
+
   /// Selects the models of open leaves; a pilot ends at `deadline`. `output` may be nullptr; otherwise throws
   /// InputError first if the image cannot be written in its format.
   void choose(const ImageOutput* output, std::optional<std::chrono::steady_clock::time_point> deadline);
@@ -52,7 +55,7 @@ class RenderTask {
   bool is_adaptive_;
   SceneDescription description_;
   std::string film_file_;
-  Location film_where_;
+  Location film_where_, where_;
   ImageRequest request_;
   std::optional<choose::Choice> choice_;
   std::shared_ptr<const Scene> pilot_;  ///< shares its geometry with scene_

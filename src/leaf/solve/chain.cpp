@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/parallel.h"
 #include "leaf/solve/azimuth.h"
 #include "leaf/solve/lobe_mean.h"
 #include "leaf/tissue/fresnel.h"
@@ -91,7 +92,8 @@ std::vector<MatrixXd> lobe_modes(double exponent, const VectorXd& axes, const Ve
   std::vector<MatrixXd> result(modes, MatrixXd(axes.size(), directions.size()));
   std::vector<double> column(modes);
   const bool symmetric = &axes == &directions;
-  for (Index i = 0; i < axes.size(); ++i)
+  for (Index i = 0; i < axes.size(); ++i) {
+    check_stop();
     for (Index j = 0; j < (symmetric ? i + 1 : directions.size()); ++j) {
       lobe(axes[i], directions[j], column);
       for (size_t m = 0; m < modes; ++m) {
@@ -99,6 +101,7 @@ std::vector<MatrixXd> lobe_modes(double exponent, const VectorXd& axes, const Ve
         if (symmetric) result[m](j, i) = column[m];
       }
     }
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/parallel.h"
 #include "leaf/solve/lobe_mean.h"
 #include "leaf/solve/quadrature.h"
 #include "leaf/tissue/fresnel.h"
@@ -136,6 +137,7 @@ std::vector<Shares> DepthSolver::solve(const Tissue& tissue, int places) const {
     for (const auto& [s, weight] : gauss_legendre(places)) {
       constexpr double kMiddle = 0.5, kRounding = 1e-12;
       if (s > kMiddle + kRounding) break;
+      check_stop();
       const double is_own_mirror = s > kMiddle - kRounding ? 0.5 : 1;
       add(tissue, s * s * (3 - 2 * s), is_own_mirror * weight * 6 * s * (1 - s), outcomes);
     }

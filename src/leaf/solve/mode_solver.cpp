@@ -1,3 +1,4 @@
+#include "core/parallel.h"
 #include "leaf/solve/chain.h"
 #include "leaf/solve/quadrature.h"
 
@@ -77,6 +78,7 @@ Prospects ModeSolver::solve(const Tissue& tissue, int places) const {
   for (const auto& [s, weight] : gauss_legendre(places)) {
     constexpr double kMiddle = 0.5, kRounding = 1e-12;
     if (s > kMiddle + kRounding) break;
+    check_stop();
     const Prospects part = solve(survivals(tissue, s * s * (3 - 2 * s)));
     const double w =
         weight * 6 * s * (1 - s) * (s > kMiddle - kRounding ? 0.5 : 1);  // the middle is its own mirror image

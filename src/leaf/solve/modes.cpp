@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/parallel.h"
 #include "leaf/solve/chain.h"
 #include "leaf/tissue/fresnel.h"
 
@@ -110,6 +111,7 @@ LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, doubl
   LeafModes result({sines.begin(), sines.end()});
   std::array<bool, 2> open{true, true};  // whether reflected, transmitted light has modes left
   for (size_t m = 0; m < most && (open[0] || open[1]); ++m) {
+    check_stop();
     const Sources exits = port.exits(m);
     const Prospects inside = ModeSolver(chain, m, exits).solve(tissue, 2 * nodes);
     const MatrixXd entrance = port.entrance(m);

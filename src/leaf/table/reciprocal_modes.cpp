@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "core/parallel.h"
 #include "leaf/table/exit_weights.h"
 
 namespace frond::leaf {
@@ -61,6 +62,7 @@ std::optional<VectorXd> scaling(const MatrixXd& k, const VectorXd& share) {
   if (share.cwiseAbs().maxCoeff() < kNothing) return d;  // black: nothing to scale
   double off = 0;
   for (int step = 0; step < kMostSteps; ++step) {
+    check_stop();
     const VectorXd sum = k * d;
     if (!(sum.minCoeff() > 0 && share.minCoeff() > 0)) return {};
     off = (d.cwiseProduct(sum).cwiseQuotient(share).array() - 1).abs().maxCoeff();

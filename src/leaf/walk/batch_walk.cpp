@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/stop.h"
 #include "leaf/walk/batch_slots.h"
 
 namespace frond::leaf {
@@ -54,7 +55,7 @@ class Batch {
   void run(batch::Step step) {
     live_ = std::min(out_.size(), Slots::kCount);
     for (size_t slot = 0; slot < live_; ++slot) start(slot);
-    while (live_ > 0) {
+    for (StopPoll poll; live_ > 0; poll()) {
       uint64_t ended = step(tables_, slots_, live_);
       if (live_ < Slots::kCount) ended &= (uint64_t{1} << live_) - 1;
       if (!traps_.empty()) ended |= trapped();

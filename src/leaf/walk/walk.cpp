@@ -1,5 +1,6 @@
 #include "leaf/walk/walk.h"
 
+#include "core/stop.h"
 #include "leaf/walk/walker.h"
 
 namespace frond::leaf {
@@ -24,7 +25,7 @@ End<K> walk_lanes(const std::array<const Tissue*, K>& tissues, size_t hero, cons
   const DiskPoint p = r2 > 0 ? DiskPoint{first.x, first.y, r2} : sample_disk(rng);
   ray.scatter(enters, surface, p, kNoConnection);
   if (!enters) return {Fate::surface, ray.direction(), ray.weights()};
-  while (ray.inside())
+  for (StopPoll poll; ray.inside(); poll())  // long where next to nothing is absorbed
     if (!ray.step(kNoConnection)) return {Fate::absorbed, ray.direction(), {}};
 
   ray.leave();
@@ -54,8 +55,7 @@ std::array<double, K> estimate_subsurface_f_lanes(const std::array<const Tissue*
       if (weights[i] > 0) sum[i] += weights[i] * Walker<K>::lobe_density(lobe, ray.axis(i), inner[i]);
   };
   if (!ray.enter(ray.ahead(), sample_disk(rng), connect)) return {};
-  while (ray.inside() && ray.step(connect)) {
-  }
+  for (StopPoll poll; ray.inside() && ray.step(connect);) poll();
   for (size_t i = 0; i < K; ++i) sum[i] *= factor[i];
   return sum;
 }

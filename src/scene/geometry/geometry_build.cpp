@@ -2,6 +2,7 @@
 #include <cassert>
 
 #include "core/error.h"
+#include "core/stop.h"
 #include "scene/geometry/embree_instances.h"
 #include "scene/geometry/embree_surfaces.h"
 #include "scene/geometry/geometry.h"
@@ -26,6 +27,9 @@ bool has_small_meshes_beside_others(const ObjectParts& parts) {
   return triangles <= kMostTriangles && (meshes < parts.surfaces.size() || !parts.instances.empty());
 }
 
+/// Embree calls it while it builds, and gives up if it returns false.
+bool goes_on(void* stop, double /*share*/) { return !static_cast<const StopState*>(stop)->is_requested(); }
+
 }  // namespace
 
 void embree::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
@@ -46,7 +50,9 @@ Geometry::Geometry(std::vector<ObjectParts> objects, ObjectParts world, int thre
 
 /// Embree reports errors through the device, not by return values.
 void Geometry::check() const {
-  if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+  const RTCError error = rtcGetDeviceError(device_.get());
+  if (error == RTC_ERROR_CANCELLED) throw Stopped();
+  if (error != RTC_ERROR_NONE)
     fail({}, "Embree cannot build the scene: {}",
          error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
 }
@@ -64,7 +70,10 @@ std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t firs
   object->scene = new_scene();
   RTCScene scene = object->scene.get();
   attach(*object);
+  StopState stop = current_stop();  // Embree builds in threads of its own
+  rtcSetSceneProgressMonitorFunction(scene, goes_on, &stop);
   rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
   check();
   object->bounds = widened(embree::bounds_of(scene));
   object->outline = outline_of(object->parts, embree::bounds_of(scene));

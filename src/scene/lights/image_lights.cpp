@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/light.h"
+#include "core/stop.h"
 #include "scene/lights/light_image.h"
 #include "scene/lights/light_params.h"
 #include "scene/math/direction_map.h"
@@ -78,8 +79,10 @@ class ProjectionLight final : public ImagePointLight {
   double flux() const {
     const int width = image_.width(), height = image_.height();
     double sum = 0;
+    StopPoll poll;
     for (int j = 0; j < height; ++j)
       for (int i = 0; i < width; ++i) {
+        poll();
         const double x = ((2 * i + 1.0) / width - 1) * double(half_width_);
         const double y = ((2 * j + 1.0) / height - 1) * double(half_height_);
         const double spread = double(directions().spread(to_float(normalize(Vec3d{x, y, 1}))));
@@ -108,7 +111,9 @@ class GoniometricLight final : public ImagePointLight {
            image.height);
     size_ = image.width;
     double sum = 0;
+    StopPoll poll;
     for (size_t i = 0; i < image.pixels.size(); i += 3) {
+      poll();
       const int cell = int(texels_.size());
       const Vec2 centre{(float(cell % size_) + 0.5f) / float(size_), (float(cell / size_) + 0.5f) / float(size_)};
       const Vec3 w = sphere_from_square(centre);

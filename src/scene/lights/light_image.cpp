@@ -4,6 +4,7 @@
 #include <bit>
 #include <optional>
 
+#include "core/stop.h"
 #include "image/rgb_file.h"
 #include "spectra/cie.h"
 
@@ -137,7 +138,9 @@ LightImage::LightImage(const ColorImage& file)
   constexpr size_t kMostFits = 10000;
   FitTable table(*file.space);
   ColorNumbers numbers(file.image);
+  StopPoll poll;
   for (uint32_t i = 0; i < luminances_.size(); ++i) {
+    poll();
     const Rgb c = rgb_at(file.image, i);
     const auto [number, is_new] = numbers.of(i);
     texels_.push_back(number);
@@ -149,6 +152,7 @@ LightImage::LightImage(const ColorImage& file)
       continue;
     }
     const Triple share{double(c[0]) / peak, double(c[1]) / peak, double(c[2]) / peak};
+    check_stop();
     const SigmoidPolynomial reflectance =
         colors_.size() < kMostFits ? fit_reflectance(*file.space, share).reflectance : table.at(c);
     colors_.push_back({reflectance, float(peak)});

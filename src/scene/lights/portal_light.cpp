@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/stop.h"
 #include "scene/lights/light_params.h"
 #include "scene/lights/sphere_image.h"
 #include "scene/math/distribution.h"
@@ -118,7 +119,9 @@ class PortalEnvironment final : public EnvironmentLight {
         scale_(sphere_image_scale(p, file)),
         directions_(weights(image_->width()), image_->width()) {
     const int n = image_->width();
+    StopPoll poll;
     for (int i = 0; i < n * n; ++i) {
+      poll();
       const auto [w, steradians] = portal_.direction_of(center(i, n));
       flux_ += double(image_->luminances()[size_t(i)] * steradians * portal_.cosine(w)) / (double(n) * n);
     }
@@ -135,7 +138,9 @@ class PortalEnvironment final : public EnvironmentLight {
       if (y < 0 || y >= n) y = y < 0 ? -1 - y : 2 * n - 1 - y, x = n - 1 - x;
       return file.image.at(x, y, c);
     };
+    StopPoll poll;
     for (int i = 0; i < n * n; ++i) {
+      poll();
       const Vec2 uv = square_from_sphere(normalize_any(light_from_world.vector(portal_.direction_of(center(i, n)).w)));
       const float x = uv.x * float(n) - 0.5f, y = uv.y * float(n) - 0.5f;
       const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;

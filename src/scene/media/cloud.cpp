@@ -1,4 +1,5 @@
 #include "scene/media/medium_params.h"
+#include "scene/media/null_collisions.h"
 #include "scene/textures/noise.h"
 
 namespace frond {
@@ -31,19 +32,22 @@ class Cloud final : public Medium {
  public:
   Cloud(const Params& p, const Transform& world_from_medium)
       : box_(medium_box(p, world_from_medium)),
+        null_collisions_(box_.bounds(), world_from_medium, p.where()),
         coefficients_(p),
         phase_(Phase::henyey_greenstein(float(p.real("g")))),
         density_(float(p.real("density"))),
         wispiness_(float(p.real("wispiness"))),
-        frequency_(float(p.real("frequency"))) {}
+        frequency_(float(p.real("frequency"))),
+        largest_(largest_density()) {}
 
   MediumPoint at(const Vec3& p, const SampledWavelengths& lambda) const override {
     const float density = density_at(box_.local(p));
     return {coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
   }
   MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
-    return box_.steps(ray, nullptr, coefficients_.sigma_t(lambda));
+    return box_.steps(ray, nullptr, coefficients_.sigma_t(lambda) * largest_);
   }
+  void check(const WavelengthStrategy& wavelengths) const override { null_collisions_.check(*this, wavelengths); }
 
  private:
   /// Difference quotient of the noise.
@@ -67,11 +71,20 @@ class Cloud final : public Medium {
     const float thinned = std::clamp((1 - p.y) * 4.5f * density_ * noise, 0.f, 1.f);
     return std::clamp(thinned + 2 * std::max(0.f, 0.5f - p.y), 0.f, 1.f);
   }
+  /// Upper bound of the density in the box: 1 unless `density` is small and the box is above y = 0.
+  float largest_density() const {
+    constexpr float kLargestNoise = 1.1f;  // of the sum of octaves, whose amplitudes sum to 0.97
+    const float low = box_.bounds().min.y, high = box_.bounds().max.y;
+    const float thinned = std::max(std::abs(1 - low), std::abs(1 - high)) * 4.5f * density_ * kLargestNoise;
+    return std::min(1.f, thinned + 2 * std::max(0.f, 0.5f - low));
+  }
 
   MediumBox box_;
+  NullCollisionCheck null_collisions_;
   Coefficients coefficients_;
   Phase phase_;
   float density_, wispiness_, frequency_;
+  float largest_;  ///< factor of the coefficients that gives the majorant
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <map>
 
+#include "core/parallel.h"
 #include "scene/media/medium_params.h"
+#include "scene/media/null_collisions.h"
 #include "scene/media/sampled_grid.h"
 #include "spectra/analytic.h"
 #include "spectra/check_range.h"
@@ -58,6 +60,7 @@ class UniformGrid final : public Medium {
  public:
   UniformGrid(const Params& p, const Transform& world_from_medium)
       : box_(medium_box(p, world_from_medium)),
+        null_collisions_(box_.bounds(), world_from_medium, p.where()),
         coefficients_(p),
         phase_(Phase::henyey_greenstein(float(p.real("g")))),
         density_(grid_of(p, "density")),
@@ -84,9 +87,11 @@ class UniformGrid final : public Medium {
     return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
   bool is_emissive() const override { return emission_ || temperatures_; }
+  void check(const WavelengthStrategy& wavelengths) const override { null_collisions_.check(*this, wavelengths); }
 
  private:
   MediumBox box_;
+  NullCollisionCheck null_collisions_;
   Coefficients coefficients_;
   Phase phase_;
   SampledGrid<float> density_, emission_scale_;
@@ -161,6 +166,7 @@ class ColorGrid {
     std::vector<Color> colors;
     colors.reserve(rgb.size());
     for (const Vec3& c : rgb) {
+      check_stop();
       Color& color = known[{c.x, c.y, c.z}];
       if (color.scale == 0 && std::max({c.x, c.y, c.z}) > 0) {
         if (known.size() > kMostFits && !table) table.emplace(space);
@@ -199,6 +205,7 @@ class RgbGrid final : public Medium {
  public:
   RgbGrid(const Params& p, const Transform& world_from_medium)
       : box_(medium_box(p, world_from_medium)),
+        null_collisions_(box_.bounds(), world_from_medium, p.where()),
         phase_(Phase::henyey_greenstein(float(p.real("g")))),
         scale_(float(p.real("scale"))),
         // pbrt-v4 does not divide this emission by the integral of ybar.
@@ -246,10 +253,12 @@ class RgbGrid final : public Medium {
   void check(const WavelengthStrategy& wavelengths) const override {
     for (const std::optional<ColorGrid>* grid : {&sigma_a_, &sigma_s_, &emission_})
       if (*grid) (*grid)->check(wavelengths);
+    null_collisions_.check(*this, wavelengths);
   }
 
  private:
   MediumBox box_;
+  NullCollisionCheck null_collisions_;
   Phase phase_;
   float scale_, emission_scale_;
   std::optional<ColorGrid> sigma_a_, sigma_s_, emission_;

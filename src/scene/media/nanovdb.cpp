@@ -1,5 +1,7 @@
+#include "core/parallel.h"
 #include "scene/media/medium_params.h"
 #include "scene/media/nanovdb_grid.h"
+#include "scene/media/null_collisions.h"
 #include "system/file_bytes.h"
 
 namespace frond {
@@ -63,11 +65,13 @@ class NanoVdb final : public Medium {
   NanoVdb(const Params& p, const Transform& world_from_medium)
       : grids_(read_grids(p)),
         box_(grids_.bounds, world_from_medium),
+        null_collisions_(grids_.bounds, world_from_medium, p.where()),
         coefficients_(p),
         phase_(Phase::henyey_greenstein(float(p.real("g")))),
         temperature_(p),
         emission_scale_(float(p.real("Lescale"))) {
     grids_.density->for_each([this](const Vec3& low, const Vec3& high, float density) {
+      check_stop();  // a large tile raises all cells
       majorants_.raise(box_.share(low), box_.share(high), density);
     });
   }
@@ -84,10 +88,12 @@ class NanoVdb final : public Medium {
     return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
   bool is_emissive() const override { return grids_.temperature && emission_scale_ > 0; }
+  void check(const WavelengthStrategy& wavelengths) const override { null_collisions_.check(*this, wavelengths); }
 
  private:
   Grids grids_;
   MediumBox box_;
+  NullCollisionCheck null_collisions_;
   Coefficients coefficients_;
   Phase phase_;
   Temperature temperature_;

@@ -8,8 +8,12 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <new>
+#include <span>
 #include <vector>
+
+#include "core/stop.h"
 
 namespace frond {
 namespace {
@@ -100,7 +104,8 @@ class NodeCheck {
     check_root(tree, uppers);
     for (uint64_t i = 0; i < uppers.count; ++i) check_node(uppers.begin[i], lowers);
     for (uint64_t i = 0; i < lowers.count; ++i) check_node(lowers.begin[i], leaves);
-    for (uint64_t i = 0; i < leaves.count; ++i)
+    StopPoll poll;
+    for (uint64_t i = 0; i < leaves.count; ++i, poll())
       for (const float v : leaves.begin[i].data()->mValues) finite(v);
   }
 
@@ -191,6 +196,32 @@ Memory allocate(uint64_t size, const Bytes& file) {
   }
 }
 
+/// Unpacks a zlib stream, in blocks between which a stop is observed. Returns false unless it fills `to` exactly.
+bool inflate_into(std::span<std::byte> to, std::string_view packed) {
+  constexpr size_t kBlock = size_t{1} << 24;
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  const std::unique_ptr<z_stream, decltype(&inflateEnd)> end(&stream, &inflateEnd);
+  for (;;) {
+    check_stop();
+    if (stream.avail_in == 0) {
+      const std::string_view block = packed.substr(0, kBlock);
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(block.data()));  // zlib does not write there
+      stream.avail_in = uInt(block.size());
+      packed.remove_prefix(block.size());
+    }
+    if (stream.avail_out == 0 && !to.empty()) {
+      const std::span<std::byte> block = to.first(std::min(to.size(), kBlock));
+      stream.next_out = reinterpret_cast<Bytef*>(block.data());
+      stream.avail_out = uInt(block.size());
+      to = to.subspan(block.size());
+    }
+    const int verdict = inflate(&stream, Z_NO_FLUSH);
+    if (verdict == Z_STREAM_END) return stream.avail_out == 0 && to.empty();
+    if (verdict != Z_OK) return false;
+  }
+}
+
 Memory unpack(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, const Bytes& file) {
   if (codec == nanovdb::io::Codec::BLOSC)
     file.refuse("it is compressed by BLOSC; nanovdb_convert --zip writes one that can be read");
@@ -204,11 +235,7 @@ Memory unpack(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, 
   if (packed.size() < sizeof(uint64_t) || size / kMostRatio > packed.size()) file.refuse("it is damaged");
   const std::string_view stream = packed.substr(sizeof(uint64_t));
   Memory memory = allocate(size, file);
-  uLongf unpacked = size;
-  if (uncompress(reinterpret_cast<Bytef*>(memory.get()), &unpacked, reinterpret_cast<const Bytef*>(stream.data()),
-                 stream.size()) != Z_OK ||
-      unpacked != size)
-    file.refuse("it is damaged");
+  if (!inflate_into({memory.get(), size}, stream)) file.refuse("it is damaged");
   return memory;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/stop.h"
 #include "core/vec.h"
 #include "scene/media/majorants.h"
 
@@ -37,9 +38,11 @@ class SampledGrid {
   /// Raises the majorants of the cells in which the value `density(value)` has an effect.
   template <class Density>
   void bound(MajorantGrid& majorants, const Density& density) const {
+    StopPoll poll;
     for (int z = 0; z < n_[2]; ++z)
       for (int y = 0; y < n_[1]; ++y)
         for (int x = 0; x < n_[0]; ++x) {
+          poll();
           const auto share = [&](float dx) {
             return Vec3{(float(x) + dx) / float(n_[0]), (float(y) + dx) / float(n_[1]), (float(z) + dx) / float(n_[2])};
           };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/excerpt.h"
+#include "core/stop.h"
 #include "scene/shapes/ply_header.h"
 #include "scene/shapes/ply_source.h"
 #include "system/file_bytes.h"
@@ -115,7 +116,9 @@ class BodyReader {
 
   template <class ReadProperty, class EndRow>
   void for_each_row(const ReadProperty& read_property, const EndRow& finish) {
+    StopPoll poll;
     for (row_ = 0; row_ < element_->count; ++row_) {
+      poll();
       if (!source_.start_row()) fail_row(source_.problem());
       for (size_t i = 0; i < element_->properties.size(); ++i) read_property(element_->properties[i], i);
       if (!source_.end_row()) fail_row(source_.problem());

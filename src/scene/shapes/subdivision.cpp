@@ -7,6 +7,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "core/stop.h"
+
 namespace frond {
 namespace {
 
@@ -29,11 +31,15 @@ class ControlMesh {
 
   /// Returns the mesh after one subdivision step: moved vertices, and new ones on the edges.
   ControlMesh refined() const {
+    StopPoll poll;  // each step takes four times as long as the one before
     std::vector<Vec3d> p(p_.size());
-    for (uint32_t v = 0; v < p_.size(); ++v)
+    for (uint32_t v = 0; v < p_.size(); ++v) {
+      poll();
       p[v] = is_boundary(v) ? weighed_along(v, 1. / 8) : weighed_around(v, [](size_t n) { return beta(n); });
+    }
     std::vector<uint32_t> middles(opposite_.size(), kNone);
     for (uint32_t e = 0; e < opposite_.size(); ++e) {
+      poll();
       if (middles[e] != kNone) continue;
       middles[e] = uint32_t(p.size());
       if (opposite_[e] != kNone) middles[opposite_[e]] = middles[e];
@@ -51,11 +57,15 @@ class ControlMesh {
 
   /// Moves vertices to the limit surface, and computes their normals.
   void put_on_limit(TriangleMesh& result) const {
+    StopPoll poll;
     std::vector<Vec3d> limit(p_.size());
-    for (uint32_t v = 0; v < p_.size(); ++v)
+    for (uint32_t v = 0; v < p_.size(); ++v) {
+      poll();
       limit[v] = is_boundary(v) ? weighed_along(v, 1. / 5)
                                 : weighed_around(v, [](size_t n) { return 1 / (double(n) + 3 / (8 * beta(n))); });
+    }
     for (uint32_t v = 0; v < p_.size(); ++v) {
+      poll();
       result.p.push_back(to_float(limit[v]));
       result.n.push_back(to_float(normalize_any(normal(v, limit))));
     }
@@ -86,7 +96,9 @@ class ControlMesh {
       }
       all.push_back({low, high, e});
     }
-    std::ranges::sort(all, [](const Edge& a, const Edge& b) {
+    StopPoll poll;
+    std::ranges::sort(all, [&poll](const Edge& a, const Edge& b) {
+      poll();
       return std::tie(a.low, a.high, a.edge) < std::tie(b.low, b.high, b.edge);
     });
     opposite_.assign(edges, kNone);
@@ -122,7 +134,9 @@ class ControlMesh {
         first_[v] = e;
       }
     }
+    StopPoll poll;
     for (uint32_t v = 0; v < p_.size(); ++v) {
+      poll();
       size_t reached = 0;
       if (first_[v] != kNone) for_each_edge(v, [&](uint32_t) { ++reached; });
       if (reached == count[v]) continue;

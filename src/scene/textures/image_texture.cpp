@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/stop.h"
 #include "core/texture.h"
 #include "image/rgb_file.h"
 #include "scene/textures/clamped.h"
@@ -129,7 +130,9 @@ struct LoadedImage {
 
   explicit LoadedImage(MipMap m, bool is_red = false) : map(std::move(m)), is_red_alone(is_red) {
     const int channels = map.channels();
+    StopPoll poll;
     map.each([&](Float4 v) {
+      poll();
       for (int c = 0; c < channels; ++c)
         values = {std::min(values.min, double(v[c])), std::max(values.max, double(v[c]))};
     });
@@ -139,7 +142,9 @@ struct LoadedImage {
 /// Channels are decoded before they are averaged.
 Image mean_of_channels(const Image& image, const ColorEncoding& encoding) {
   Image mean(image.width, image.height, {"Y"});
+  StopPoll poll;
   for (size_t i = 0; i < mean.pixels.size(); ++i) {
+    poll();
     const float* v = &image.pixels[3 * i];
     mean.pixels[i] = (encoding.decode(v[0]) + encoding.decode(v[1]) + encoding.decode(v[2])) / 3;
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/stop.h"
 #include "image/rgb_file.h"
 
 namespace frond {
@@ -73,7 +74,11 @@ MipMap::MipMap(const Image& image, const ColorEncoding& encoding, bool eight_bit
     for (int i = 0; i < 256; ++i) decoded_.push_back(encoding.decode(float(i) / 255));
   } else {
     level.values.reserve(image.pixels.size());
-    for (const float v : image.pixels) level.values.push_back(encoding.decode(v));
+    StopPoll poll;
+    for (const float v : image.pixels) {
+      poll();
+      level.values.push_back(encoding.decode(v));
+    }
   }
   levels_.push_back(std::move(level));
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));
@@ -84,7 +89,8 @@ MipMap::Level MipMap::halved(const Level& from) const {
   Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), {}, {}};
   to.values.reserve(size_t(to.width) * size_t(to.height) * size_t(channels_));
   const auto columns = shares(from.width, to.width), rows = shares(from.height, to.height);
-  for (const Share& row : rows)
+  for (const Share& row : rows) {
+    check_stop();
     for (const Share& column : columns) {
       Float4 sum{};
       for (int j = 0; j < 4; ++j)
@@ -93,6 +99,7 @@ MipMap::Level MipMap::halved(const Level& from) const {
             sum += w * value(from, size_t(row.first + j) * size_t(from.width) + size_t(column.first + i));
       for (int c = 0; c < channels_; ++c) to.values.push_back(sum[c]);
     }
+  }
   return to;
 }
 

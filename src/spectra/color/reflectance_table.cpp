@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "core/parallel.h"
+
 namespace frond {
 namespace {
 
@@ -26,6 +28,7 @@ ReflectanceTable::ReflectanceTable(const ColorSpace& space) : nodes_(size_t(3 * 
     for (int j = 0; j < kNodes; ++j)
       for (int i = 0; i < kNodes; ++i) {
         if (i == kNodes - 1 && j == kNodes - 1) continue;  // grey
+        check_stop();
         // From bright to dark, each fit starts at the scaled result of the one before, which is close to its own.
         Float4 d{};
         bool is_first = true;

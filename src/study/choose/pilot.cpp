@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "core/random.h"
+#include "core/stop.h"
 #include "study/choose/pilot_pixels.h"
 #include "system/machine.h"
 
@@ -42,18 +43,6 @@ MeanSquare noise_of(const std::array<std::vector<float>, 2>& halves) {
 }
 
 }  // namespace
-
-/// Ends a render at a deadline.
-class UntilDeadline final : public Progress {
- public:
-  explicit UntilDeadline(std::chrono::steady_clock::time_point deadline) : deadline_(deadline) {}
-  void update(double, const RenderStatistics&) override {
-    if (std::chrono::steady_clock::now() >= deadline_) throw Pilot::OutOfTime();
-  }
-
- private:
-  std::chrono::steady_clock::time_point deadline_;
-};
 
 struct Pilot::Render {
   std::unique_ptr<Scene> scene;
@@ -135,15 +124,24 @@ void Pilot::set_unit() {
 }
 
 void Pilot::render(const Configuration& answers, uint64_t samples) {
-  std::optional<UntilDeadline> progress;
-  if (task_.deadline) progress.emplace(*task_.deadline), progress->update(0, {});
+  const DeadlineScope limit(task_.deadline);
+  try {
+    check_stop();
+    advance(answers, samples);
+  } catch (const Stopped&) {
+    if (task_.deadline && std::chrono::steady_clock::now() >= *task_.deadline) throw OutOfTime();
+    throw;
+  }
+}
+
+void Pilot::advance(const Configuration& answers, uint64_t samples) {
   auto found = renders_.find(answers);
   if (found == renders_.end()) found = renders_.emplace(answers, make(answers)).first;
   Render& r = found->second;
   while (r.films.samples() < samples) {
     const uint64_t next = r.films.samples() == 0 ? std::min(samples, kFirstSamples)
                                                  : std::min(samples, std::bit_floor(r.films.samples()) * 2);
-    r.films.advance_to(next, *r.scene, task_.session.pool(), progress ? &*progress : nullptr);
+    r.films.advance_to(next, *r.scene, task_.session.pool(), nullptr);
     r.noise.push_back({double(next), 0, noise_of(images(r))});
   }
 }

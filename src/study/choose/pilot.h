@@ -82,6 +82,8 @@ class Pilot {
   using Halves = std::array<std::vector<float>, 2>;
 
   Render make(const Configuration& answers);
+  /// `render` without a deadline of its own.
+  void advance(const Configuration& answers, uint64_t samples);
   const Render& rendered(const Configuration& answers) const;
   Halves images(const Render& render) const;
   void set_unit();
