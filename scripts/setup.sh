@@ -25,7 +25,7 @@ configure_options=()  # for CMake, beside those of the preset
 # Debian's packages that the project needs to build; callers add their own.
 build_packages=(
   g++ cmake ninja-build pkg-config ccache
-  libembree-dev libopenimageio-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
+  libembree-dev libopenimageio-dev libwebp-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
   libzstd-dev zlib1g-dev libboost-dev libgmock-dev libbenchmark-dev libnetcdf-dev libassimp-dev
   librsvg2-dev libnanovdb-dev
 )

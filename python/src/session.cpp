@@ -127,12 +127,13 @@ void bind_session(nb::module_& m) {
   m.def(
       "read_image",
       [](const std::string& path) {
-        Image image;
+        ImageFile file;
         {
           const nb::gil_scoped_release release;
-          image = read_image(path, {}).image;
+          file = read_image(path, {});
         }
-        return arrays_of(std::move(image));
+        for (const std::string& message : file.left_out) PythonLog().warn({}, message);
+        return arrays_of(std::move(file.image));
       },
       "path"_a);
 

@@ -1,6 +1,7 @@
 #include "image/display_image.h"
 
 #include <array>
+#include <cmath>
 
 #include "core/error.h"
 #include "image/image_file.h"
@@ -33,6 +34,13 @@ void balance(Image& image, std::string_view space, const WhiteChoice& choice,
     command->second += choice.is_auto ? " --white-balance auto" : fmt::format(" --white-balance {:.6g}", choice.kelvin);
 }
 
+/// Replaces what a display has no colour for: NaN and minus infinity by black, infinity by what every view shows white.
+void make_finite(Image& image) {
+  constexpr float kWhite = 1e6f;
+  for (float& v : image.pixels)
+    if (!std::isfinite(v)) v = v > 0 ? kWhite : 0;
+}
+
 }  // namespace
 
 /// The header's stops, and those of the command, repeat an automatic exposure exactly.
@@ -40,6 +48,7 @@ AppliedExposure write_display_image(const std::string& path, const Image& image,
                                     const ColorManager& colors, const DisplayChoice& choice,
                                     std::map<std::string, std::string> text) {
   Image shown = image.selected(std::array<size_t, 3>{0, 1, 2}, {"R", "G", "B"});
+  make_finite(shown);
   if (choice.white) balance(shown, space, *choice.white, text);
   AppliedExposure applied{0, measure_exposure(shown, space)};
   if (choice.exposure) {

@@ -52,9 +52,9 @@ ExposureMeter measure_exposure(const Image& image, std::string_view space) {
     logs += std::log2(y);
     meter.dark += y < kDark;
   }
+  if (pixels > 0) meter.clipped /= double(pixels);
   if (lit.empty()) return meter;
   meter.dark /= double(lit.size());
-  meter.clipped /= double(pixels);
   const double mean = logs / double(lit.size());
   const auto bright = lit.begin() + ptrdiff_t(double(lit.size() - 1) * (1 - kMayClip));
   std::ranges::nth_element(lit, bright);

@@ -1,9 +1,13 @@
 #include "image/rgb_file.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
+#include "core/excerpt.h"
 #include "image/spectral_layout.h"
 
 namespace frond {
@@ -11,11 +15,36 @@ namespace {
 
 constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
 
+/// Names of channels for a message, of which there may be thousands.
+std::string names_of(const std::vector<std::string>& channels, const std::filesystem::path& path) {
+  constexpr size_t kMost = 8;
+  std::vector<std::string> shown;
+  for (size_t i = 0; i < std::min(kMost, channels.size()); ++i) shown.push_back(excerpt(channels[i], path));
+  const size_t more = channels.size() - shown.size();
+  return fmt::format("{}{}", fmt::join(shown, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// Channels that a colour or a number is not read from, nor a variance of a render.
+std::vector<std::string> unused_channels(const Image& image) {
+  std::vector<std::string> unused;
+  for (const std::string& name : image.channels)
+    if (name.size() != 1 || std::string_view("RGBAY").find(name) == std::string_view::npos)
+      if (!name.starts_with("variance.")) unused.push_back(name);
+  return unused;
+}
+
+void warn_of_rest(const Params& p, std::string_view name, const ImageFile& file) {
+  for (const std::string& message : file.left_out) p.warn(name, message);
+  if (const auto unused = unused_channels(file.image); !unused.empty())
+    p.warn(name, fmt::format("channels of the image that are not used: {}", names_of(unused, p.file(name))));
+}
+
 Image rgb_of(const Image& image, const std::filesystem::path& path, const Location& where) {
   std::array<size_t, 3> channels{};
   for (size_t c = 0; c < 3; ++c) {
     const auto channel = image.channel(kRgb[c]);
-    if (!channel) fail(where, "{} has no channel {}", path.string(), kRgb[c]);
+    if (!channel)
+      fail(where, "{} has no channel {}; it has {}", path.string(), kRgb[c], names_of(image.channels, path));
     channels[c] = *channel;
   }
   return image.selected(channels, {kRgb.begin(), kRgb.end()});
@@ -74,13 +103,33 @@ ImageFile read_finite(const std::filesystem::path& path, const Location& where) 
   return file;
 }
 
-ImageFile read_rgb(const std::filesystem::path& path, const Location& where) {
-  ImageFile file = read_image(path, where);
+namespace {
+
+/// Reduces a file to R, G and B.
+ImageFile only_rgb(ImageFile file, const std::filesystem::path& path, const Location& where) {
   if (file.image.channels.size() > 2)
     file.image = rgb_of(file.image, path, where);
   else
     file.image = file.image.selected(std::array<size_t, 3>{}, {kRgb.begin(), kRgb.end()});
   check_finite(file.image, path, where);
+  return file;
+}
+
+}  // namespace
+
+ImageFile read_rgb(const std::filesystem::path& path, const Location& where) {
+  return only_rgb(read_image(path, where), path, where);
+}
+
+ImageFile read_rgb(const Params& p, std::string_view name) {
+  ImageFile file = read_image(p.file(name), p.where(name));
+  warn_of_rest(p, name, file);
+  return only_rgb(std::move(file), p.file(name), p.where(name));
+}
+
+ImageFile read_finite(const Params& p, std::string_view name) {
+  ImageFile file = read_finite(p.file(name), p.where(name));
+  warn_of_rest(p, name, file);
   return file;
 }
 
@@ -105,7 +154,8 @@ LinearFile read_linear(const std::string& path, const std::string& otherwise) {
                     .is_assumed = stated.empty(),
                     .image = rgb_of(file.image, path, {}),
                     .leaf = {},
-                    .seed = {}};
+                    .seed = {},
+                    .left_out = file.left_out};
   if (const auto leaf = file.image.channel("leaf")) result.leaf = file.image.plane(*leaf);
   if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
   if (const auto pixels = file.header.text.find("frond:correlated_pixels"); pixels != file.header.text.end())

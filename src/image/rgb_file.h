@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/log.h"
+#include "core/params.h"
 #include "image/image_file.h"
 
 namespace frond {
@@ -8,6 +10,11 @@ namespace frond {
 /// with one or two channels (grey, grey and alpha) is repeated. Throws InputError at `where` if the file cannot be
 /// read, lacks one of the channels or contains values that are not finite.
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where);
+
+/// Reads the image of a parameter that names a file, and warns of what the file holds beside: other parts, and channels
+/// that are none of R, G, B, A and Y. Throws as the functions without a parameter do.
+ImageFile read_rgb(const Params& p, std::string_view name);
+ImageFile read_finite(const Params& p, std::string_view name);
 
 /// Returns the colour space of a file, by the name in its header or by its chromaticities; sRGB if the file states
 /// neither, nullptr if its chromaticities are not those of a known space.
@@ -24,11 +31,12 @@ void decode_srgb(Image& image);
 
 /// Content of a linear image file. Files of renders also state a seed and can have a leaf channel.
 struct LinearFile {
-  std::string path, space;       ///< file name, and linear name of the colour space
-  bool is_assumed = false;       ///< the file does not state the space
-  Image image;                   ///< R G B
-  std::vector<float> leaf;       ///< foliar ratio of each pixel; empty: not in the file
-  std::string seed;              ///< seed of the render, from the header; empty: not in the file
+  std::string path, space;                 ///< file name, and linear name of the colour space
+  bool is_assumed = false;                 ///< the file does not state the space
+  Image image;                             ///< R G B
+  std::vector<float> leaf;                 ///< foliar ratio of each pixel; empty: not in the file
+  std::string seed;                        ///< seed of the render, from the header; empty: not in the file
+  std::vector<std::string> left_out = {};  ///< as in ImageFile
   double correlated_pixels = 1;  ///< upper bound of the variance of a sum of pixels over that of independent pixels
 };
 

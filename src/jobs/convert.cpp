@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "image/not_finite.h"
 #include "image/rgb_file.h"
 #include "image/spectral_layout.h"
 #include "jobs/support/display_params.h"
@@ -42,11 +43,16 @@ std::string space_of(const Arguments& args) {
 }
 
 /// Reads an image in linear RGB: its own colours, or three of its bands.
-LinearFile read(const std::string& path, const JobRun& run) {
+LinearFile read_colors(const std::string& path, const JobRun& run) {
   constexpr const char* kDefault = "linear sRGB";
   if (run.args.given("bands")) {
-    Image bands = false_color_image(read_image(path, {}), path, run.args.numbers("bands"));
-    return {.path = path, .space = kDefault, .image = std::move(bands), .leaf = {}, .seed = {}};
+    ImageFile file = read_image(path, {});
+    return {.path = path,
+            .space = kDefault,
+            .image = false_color_image(file, path, run.args.numbers("bands")),
+            .leaf = {},
+            .seed = {},
+            .left_out = std::move(file.left_out)};
   }
   const std::string given = space_of(run.args);
   LinearFile file = read_linear(path, given.empty() ? kDefault : given);
@@ -56,6 +62,17 @@ LinearFile read(const std::string& path, const JobRun& run) {
   if (!file.is_assumed && !given.empty() && given != file.space)
     run.log().warn({}, fmt::format("{} states its colour space, {}: {} has no effect", path, file.space,
                                    run.args.spelled("color-space")));
+  return file;
+}
+
+/// Reads an image, and names what it has beside its finite colours.
+LinearFile read(const std::string& path, const JobRun& run) {
+  LinearFile file = read_colors(path, run);
+  for (const std::string& message : file.left_out) run.log().warn({}, message);
+  if (const std::string text = not_finite_text(file.image); !text.empty())
+    run.log().warn(
+        {}, fmt::format("{} holds {}: {}", path, text,
+                        is_exr(run.args.text("output")) ? "so does the mean" : "NaN is shown black, infinity white"));
   return file;
 }
 

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "image/not_finite.h"
 #include "image/rgb_file.h"
 #include "instruments/errors/image_error.h"
 #include "jobs/record/common_params.h"
@@ -20,7 +24,9 @@ constexpr size_t kColors = 3;
 constexpr std::array<const char*, kColors + 1> kChannels{"red", "green", "blue", "all"};
 constexpr JobParam kParams[] = {
     files_param("images", "A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.", 4),
-    output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
+    output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is, black where a "
+                 "value is not finite.",
+                 false),
     JobParam("scale", real, "Luminance difference that is drawn in full colour.",
              {.default_value = "0.1", .range = kAboveZero}),
     kJsonParam,
@@ -33,6 +39,7 @@ std::array<float, 3> false_color(float t) {
   const std::array<float, 3> blue{0.13f, 0.40f, 0.67f}, white{0.97f, 0.97f, 0.97f}, red{0.70f, 0.09f, 0.17f};
   const auto& end = t < 0 ? blue : red;
   std::array<float, 3> c{};
+  if (std::isnan(t)) return c;  // black: a value is not finite
   for (size_t k = 0; k < 3; ++k) c[k] = white[k] + (end[k] - white[k]) * std::abs(t);
   return c;
 }
@@ -47,19 +54,24 @@ void write_difference(const std::string& path, const std::vector<LinearFile>& ha
         const Image& image = halves[i].image;
         return smpte_luminance(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2));
       };
-      const auto color = false_color((at(0) + at(1) - at(2) - at(3)) / 2 / float(scale));
+      const bool is_finite =
+          std::ranges::all_of(std::array{0, 1, 2, 3}, [&](size_t i) { return std::isfinite(at(i)); });
+      const auto color = false_color(!is_finite ? NAN : (at(0) + at(1) - at(2) - at(3)) / 2 / float(scale));
       for (size_t c = 0; c < 3; ++c) shown.at(x, y, c) = color[c];
     }
   write_image(path, shown, {"", {{"frond:difference_scale", fmt::format("{}", scale)}}});
 }
 
 /// Reads the four images and converts them to linear SMPTE-C, in which errors are measured.
-std::vector<LinearFile> read_halves(const std::vector<std::string>& paths) {
+std::vector<LinearFile> read_halves(const std::vector<std::string>& paths, const Log& log) {
   const ColorManager colors;
   std::vector<LinearFile> halves;
   for (const std::string& path : paths) {
     halves.push_back(read_linear(path));
     check_same_size(halves[0], halves.back());
+    for (const std::string& message : halves.back().left_out) log.warn({}, message);
+    if (const std::string text = not_finite_text(halves.back().image); !text.empty())
+      log.warn({}, fmt::format("{} holds {}: errors over these pixels are not known", path, text));
     colors.convert(halves.back().image.pixels, halves.back().space, kSpace);
   }
   return halves;
@@ -131,6 +143,7 @@ std::string add_errors(Result& result, const std::string& region, const std::str
     shown.add(region + " pixels", std::string(n.title));
     for (size_t c = 0; c < kChannels.size(); ++c) shown.add(kChannels[c], n.of(errors[c]));
   }
+  for (Column& column : shown.columns) column.missing = "not known";
   return to_text(shown);
 }
 
@@ -140,7 +153,7 @@ Result difference(const JobRun& run) {
   if (!output.empty()) check_writable(output);
   if (!output.empty() && is_exr(output))
     fail({}, "{}: a difference is an image in false colour: name a .png or .jpg", output);
-  const auto halves = read_halves(run.args.texts("images"));
+  const auto halves = read_halves(run.args.texts("images"), run.log());
   warn_of_same_noise(halves, run.log());
   if (!output.empty()) write_difference(output, halves, run.args.real("scale"));
   Result result{.tables = {{"difference"}}};

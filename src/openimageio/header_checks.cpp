@@ -167,25 +167,11 @@ void check_bmp(const EncodedImage& file) {
     file.refuse("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
 }
 
-/// TIFF 6.0 and BigTIFF. Where the tag BitsPerSample is missing, OpenImageIO (2.4) takes 8 bits and libtiff 1, so that
-/// most of the pixels would be memory as it is.
+/// Where the tag BitsPerSample is missing, OpenImageIO (2.4) takes 8 bits and libtiff 1, so that most of the pixels
+/// would be memory as it is.
 void check_tiff(const EncodedImage& file) {
-  const bool is_little = file.bytes.starts_with('I');
-  const auto number = [&](uint64_t offset, uint64_t size) {  // 0 beyond the end
-    uint64_t value = 0;
-    if (offset > file.bytes.size() || file.bytes.size() - offset < size) return value;
-    for (uint64_t i = 0; i < size; ++i)
-      value = value << 8 | static_cast<unsigned char>(file.bytes[offset + (is_little ? size - 1 - i : i)]);
-    return value;
-  };
-  constexpr uint64_t kBig = 43, kBitsPerSample = 258;
-  const bool is_big = number(2, 2) == kBig;
-  const uint64_t count_size = is_big ? 8 : 2, entry_size = is_big ? 20 : 12;
-  const uint64_t directory = is_big ? number(8, 8) : number(4, 4);
-  const uint64_t entries = std::min(number(directory, count_size), file.bytes.size() / entry_size);
-  for (uint64_t i = 0; i < entries; ++i)
-    if (number(directory + count_size + i * entry_size, 2) == kBitsPerSample) return;
-  file.refuse("its header has no BitsPerSample");
+  constexpr uint16_t kBitsPerSample = 258;
+  if (!tiff_number(file.bytes, kBitsPerSample)) file.refuse("its header has no BitsPerSample");
 }
 
 /// OpenImageIO (2.4) looks colours up without regard to the size of the palette.
@@ -198,6 +184,28 @@ void check_tga(const EncodedImage& file) {
 }
 
 }  // namespace
+
+/// TIFF 6.0 and BigTIFF: an entry is a tag, a type, the number of its values, and these or where they are.
+std::optional<uint64_t> tiff_number(std::string_view bytes, uint16_t tag) {
+  const bool is_little = bytes.starts_with('I');
+  const auto number = [&](uint64_t offset, uint64_t size) {  // 0 beyond the end
+    uint64_t value = 0;
+    if (offset > bytes.size() || bytes.size() - offset < size) return value;
+    for (uint64_t i = 0; i < size; ++i)
+      value = value << 8 | static_cast<unsigned char>(bytes[offset + (is_little ? size - 1 - i : i)]);
+    return value;
+  };
+  constexpr uint64_t kBig = 43, kShort = 3;
+  const bool is_big = number(2, 2) == kBig;
+  const uint64_t count_size = is_big ? 8 : 2, entry_size = is_big ? 20 : 12, value = is_big ? 12 : 8;
+  const uint64_t directory = is_big ? number(8, 8) : number(4, 4);
+  const uint64_t entries = std::min(number(directory, count_size), bytes.size() / entry_size);
+  for (uint64_t i = 0; i < entries; ++i) {
+    const uint64_t entry = directory + count_size + i * entry_size;
+    if (number(entry, 2) == tag) return number(entry + value, number(entry + 2, 2) == kShort ? 2 : 4);
+  }
+  return {};
+}
 
 void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels, int64_t rows) {
   constexpr int64_t kMostCompression = 16384;  // images of 8 bits compress by 1032 at most (deflate)

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "core/error.h"
@@ -33,6 +34,10 @@ void check_tiles(const EncodedImage& file, int64_t tile_width, int64_t tile_heig
 /// Throws InputError for headers that OpenImageIO's readers or OpenEXR follow beyond the file's data. `format` is one
 /// of image_format_of. Damage that they report themselves is left to them.
 void check_header(const EncodedImage& file, std::string_view format);
+
+/// Returns the first value of an entry of a TIFF's first directory, if it stands in the entry; nothing where there is
+/// no such entry.
+std::optional<uint64_t> tiff_number(std::string_view bytes, uint16_t tag);
 
 /// Returns whether the text is UTF-8 (RFC 3629).
 bool is_utf8(std::string_view text);

@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <fmt/ranges.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -11,7 +12,10 @@
 #include <optional>
 #include <system_error>
 
+#include "core/excerpt.h"
+#include "openimageio/alpha.h"
 #include "openimageio/header_checks.h"
+#include "openimageio/webp.h"
 
 namespace frond {
 namespace {
@@ -109,6 +113,32 @@ bool read_pixels(OIIO::ImageInput& in, const OIIO::ImageSpec& spec, Image& image
   return !in.has_error();
 }
 
+/// Returns a message that names what a file holds beside its first image: parts of an EXR, pages of a TIFF; nothing
+/// where there is none.
+std::vector<std::string> left_out_of(OIIO::ImageInput& in, const fs::path& path) {
+  constexpr int kMostCounted = 1000;  // each is searched for from the first one on
+  constexpr size_t kMostNamed = 5;
+  std::vector<std::string> names;
+  const auto name = [&in](int part) { return in.spec(part, 0).get_string_attribute("oiio:subimagename"); };
+  const std::string first = name(0);
+  int others = 0;
+  while (others < kMostCounted && in.seek_subimage(others + 1, 0)) {
+    ++others;
+    if (const std::string other = name(others); !other.empty() && names.size() < kMostNamed)
+      names.push_back(fmt::format("\"{}\"", excerpt(other, path)));
+  }
+  in.geterror();  // after the last one
+  if (others == 0) return {};
+  const std::string listed =
+      names.empty() ? "" : fmt::format(": {}{}", fmt::join(names, ", "), size_t(others) > names.size() ? ", ..." : "");
+  return {fmt::format("only the first of the images in \"{}\"{} is read; {}{} left out{}", path.string(),
+                      first.empty() ? "" : fmt::format(", \"{}\",", excerpt(first, path)), others,
+                      others == kMostCounted ? " or more are"
+                      : others == 1          ? " is"
+                                             : " are",
+                      listed)};
+}
+
 /// The codec of this shared object. It has no state, so that all threads can use it at once.
 class OpenImageIOCodec final : public ImageCodec {
  public:
@@ -159,6 +189,7 @@ class OpenImageIOCodec final : public ImageCodec {
     check((!is_jpeg || is_whole_jpeg(bytes)) && (!is_png || is_whole_png(bytes)), "the file ends too soon");
     const EncodedImage encoded{bytes, path, where};
     check_header(encoded, format);
+    if (format == "webp") return decode_webp(encoded);
     OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);  // keep the file's values: no multiplication by alpha
     MemoryReader memory(bytes);
@@ -175,6 +206,8 @@ class OpenImageIOCodec final : public ImageCodec {
       ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
                      spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
       check(read_pixels(*in, spec, file.image), in->geterror());
+      if (is_multiplied(encoded, format, spec)) divide_by_alpha(file.image, size_t(spec.alpha_channel), file.eight_bit);
+      file.left_out = left_out_of(*in, path);
       return file;
     } catch (const InputError&) {
       throw;

@@ -11,9 +11,12 @@ namespace frond {
 struct MeanSquare {
   double value = 0, standard_error = 0;
 
-  double root() const { return std::sqrt(std::max(0.0, value)); }
+  double root() const { return root_of(value); }
   /// Root of the upper end of a confidence interval, `z` standard errors up.
-  double root_at(double z) const { return std::sqrt(std::max(0.0, value + z * standard_error)); }
+  double root_at(double z) const { return root_of(value + z * standard_error); }
+
+  /// NaN stays NaN, which std::max would take for 0.
+  static double root_of(double square) { return square < 0 ? 0 : std::sqrt(square); }
 };
 
 /// Number of standard errors of a two-sided 95 % interval of a normal variable.
@@ -37,7 +40,8 @@ struct ImageError {
 
 /// Computes the error of one channel from the four halves, by pixel. `use` (as long, or empty for all pixels) selects
 /// pixels by a weight above 0.5. `correlated_pixels`: number of pixels that share the noise of one
-/// (Splatting::correlated_pixels); the standard error grows with its root.
+/// (Splatting::correlated_pixels); the standard error grows with its root. A value that is not finite makes all numbers
+/// NaN.
 ImageError image_error(std::span<const float> a1, std::span<const float> a2, std::span<const float> b1,
                        std::span<const float> b2, std::span<const float> use = {}, double correlated_pixels = 1);
 

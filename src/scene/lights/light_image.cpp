@@ -110,7 +110,7 @@ class ColorNumbers {
 
 /// 8-bit files are decoded from sRGB; others are linear.
 ColorImage read_light_image(const Params& p) {
-  ImageFile file = read_rgb(p.file("filename"), p.where("filename"));
+  ImageFile file = read_rgb(p, "filename");
   if (file.is_encoded) decode_srgb(file.image);
   float lowest = 0;
   for (float& v : file.image.pixels) lowest = std::min(lowest, v), v = std::max(v, 0.f);

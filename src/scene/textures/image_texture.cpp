@@ -152,8 +152,8 @@ Image mean_of_channels(const Image& image, const ColorEncoding& encoding) {
 }
 
 /// Loads an image for a float texture.
-LoadedImage load_numbers(const Params& p, const std::filesystem::path& path, std::optional<ColorEncoding> known) {
-  const ImageFile file = read_finite(path, p.where("filename"));
+LoadedImage load_numbers(const Params& p, std::optional<ColorEncoding> known) {
+  const ImageFile file = read_finite(p, "filename");
   const ColorEncoding encoding = known ? *known : default_encoding(file);
   const MipMap::Options options = options_of(p);
   const Image image = one_channel(p, file.image);
@@ -175,8 +175,8 @@ void convert_to_srgb(const ColorSpace& from, Image& image) {
 }
 
 /// Loads an image for a spectrum texture. 8-bit files keep their bytes, to save memory.
-LoadedImage load_colors(const Params& p, const std::filesystem::path& path, std::optional<ColorEncoding> known) {
-  ImageFile file = read_rgb(path, p.where("filename"));
+LoadedImage load_colors(const Params& p, std::optional<ColorEncoding> known) {
+  ImageFile file = read_rgb(p, "filename");
   const ColorSpace* space = color_space_of(file);
   if (!space) p.warn("filename", "the image's colour space is unknown: sRGB is used");
   if (space && space->name != "srgb" && !file.eight_bit) convert_to_srgb(*space, file.image);
@@ -194,7 +194,7 @@ std::shared_ptr<const LoadedImage> loaded(const Params& p, SharedWork* shared, s
       fmt::format("image {} {} {} {} {} {}", what, int(o.filter), int(o.wrap), o.max_anisotropy,
                   encoding ? fmt::format("{} {}", int(encoding->curve), encoding->gamma) : "-", path.string());
   SharedWork own;
-  return (shared ? *shared : own).get<LoadedImage>(key, [&] { return load(p, path, encoding); });
+  return (shared ? *shared : own).get<LoadedImage>(key, [&] { return load(p, encoding); });
 }
 
 /// Image as float texture.

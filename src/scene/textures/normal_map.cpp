@@ -160,7 +160,7 @@ std::shared_ptr<const NormalBend> make_normal_bend(const ParsedPlugin& material,
   const Params p(normal_bend_params, split_bend(material, true), resolver);
   if (p.given("normalmap") && !p.string("normalmap").empty()) {
     if (p.given("displacement")) p.warn("displacement", "\"normalmap\" is given too: this is ignored, as in pbrt-v4");
-    return std::make_shared<NormalMap>(read_rgb(p.file("normalmap"), p.where("normalmap")));
+    return std::make_shared<NormalMap>(read_rgb(p, "normalmap"));
   }
   if (!p.given("displacement")) return nullptr;
   const auto displacement = p.float_texture("displacement");
