@@ -15,8 +15,8 @@ std::string escaped(std::string_view text);
 /// Returns the text with its control characters as escapes, but for line ends and tabs: for a text of several lines.
 std::string printable(std::string_view text);
 
-/// Returns a word of a file as messages quote it: at most 40 characters, or 8 if the file is foreign; "..." follows where
-/// it was cut.
+/// Returns a word of a file as messages quote it: at most 40 characters, or 8 if the file is foreign; "..." follows
+/// where it was cut.
 std::string excerpt(std::string_view word, const std::filesystem::path& file);
 std::string excerpt(std::string_view word, const Location& where);
 

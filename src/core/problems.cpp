@@ -18,7 +18,10 @@ std::string lines(const std::vector<std::string>& messages, size_t count, std::s
 }  // namespace
 
 InputErrors::InputErrors(std::vector<std::string> messages, size_t count)
-    : InputError({}, ""), messages_(std::move(messages)), count_(count), what_(lines(messages_, count, "", kMostShown)) {}
+    : InputError({}, ""),
+      messages_(std::move(messages)),
+      count_(count),
+      what_(lines(messages_, count, "", kMostShown)) {}
 
 std::string InputErrors::text(std::string_view prefix, size_t most) const {
   return lines(messages_, count_, prefix, most);

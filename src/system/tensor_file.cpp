@@ -64,7 +64,8 @@ TensorFile::TensorFile(std::string bytes, std::string name, Location where)
     need(reader.take(length) && reader.take(length, field.name) && reader.take(dimensions) && reader.take(field.type) &&
          reader.take(offset));
     if (field.type == 0 || field.type >= kBytes.size())
-      refuse(fmt::format("field \"{}\" has the unknown type {}", excerpt(field.name, std::filesystem::path(name_)), field.type));
+      refuse(fmt::format("field \"{}\" has the unknown type {}", excerpt(field.name, std::filesystem::path(name_)),
+                         field.type));
     // No product of the shape exceeds the size of the file, so that it cannot overflow.
     const size_t most = offset <= bytes_.size() ? (bytes_.size() - offset) / kBytes[field.type] : 0;
     bool fits = offset <= bytes_.size();
@@ -77,8 +78,8 @@ TensorFile::TensorFile(std::string bytes, std::string name, Location where)
       field.shape.push_back(size);
     }
     if (!fits || field.count > most)
-      refuse(
-          fmt::format("it is truncated: field \"{}\" ends after the {} bytes of the file", excerpt(field.name, std::filesystem::path(name_)), bytes_.size()));
+      refuse(fmt::format("it is truncated: field \"{}\" ends after the {} bytes of the file",
+                         excerpt(field.name, std::filesystem::path(name_)), bytes_.size()));
     field.bytes = std::string_view(bytes_).substr(offset, field.count * kBytes[field.type]);
     fields_.push_back(std::move(field));
   }

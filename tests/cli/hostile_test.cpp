@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <iterator>
 
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
@@ -47,6 +48,101 @@ TEST_F(Hostile, CanopiesThatNoTableHoldsAreRefused) {
   EXPECT_THAT(canopy({"--column", "a=1:2", "--column", "a=3:4"}), HasSubstr("there are two columns \"a\""));
   EXPECT_THAT(canopy({"--column", "a=-1e308:1e308"}), HasSubstr("the largest of a table"));
   EXPECT_THAT(canopy({"--column", std::string(20000, 'a') + "=1:2"}), HasSubstr("10000 is the limit"));
+}
+
+/// Uses of a file by a scene, with FILE for its name.
+const std::string kUses[] = {
+    "Include \"FILE\"",
+    "Import \"FILE\"",
+    "Shape \"plymesh\" \"string filename\" \"FILE\"",
+    "Material \"diffuse\" \"spectrum reflectance\" \"FILE\"",
+    "Material \"leaf_simplified\" \"string tablefile\" \"FILE\"",
+    "Material \"leaf_solved\" \"string tablefile\" \"FILE\"",
+    "Material \"measured\" \"string filename\" \"FILE\"",
+    "Material \"diffuse\" \"string normalmap\" \"FILE\"",
+    "LightSource \"infinite\" \"string filename\" \"FILE\"",
+    "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"FILE\"\nMaterial \"diffuse\" \"texture displacement\" "
+    "\"t\"",
+    "ObjectBegin \"o\"\nShape \"disk\"\nObjectEnd\nShape \"instances\" \"string object\" \"o\" \"string filename\" "
+    "\"FILE\"",
+    "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"FILE\"\nMediumInterface \"m\" \"\""};
+
+/// Contents that the readers take for theirs up to a word that must not be told.
+const std::string kSecrets[] = {
+    "Xq7ThisIsSecret1 Xq7ThisIsSecret2\nXq7ThisIsSecret3\n",
+    "Material \"Xq7ThisIsSecret\"\nShape \"Xq7ThisIsSecret\" \"float Xq7ThisIsSecret\" "
+    "1\nXq7ThisIsSecret\nNamedMaterial "
+    "\"Xq7ThisIsSecret\"\nMaterial \"diffuse\" \"Xq7ThisIsSecret reflectance\" 1\nRotate Xq7ThisIsSecret\n",
+    "Translate Xq7ThisIsSecret 1 2\nMakeNamedMaterial \"Xq7ThisIsSecret\" \"string type\" \"Xq7ThisIsSecret\"\n",
+    "ply\nformat ascii 1.0\nelement Xq7ThisIsSecret Xq7ThisIsSecret\n",
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty Xq7ThisIsSecret x\n",
+    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+    "Xq7ThisIsSecret\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1 1 Xq7ThisIsSecret 1\n",
+    "450 Xq7ThisIsSecret\n",
+    "theta_deg,wavelength_nm,Rs,Rd,T\n0,450,Xq7ThisIsSecret,0,0\n",
+    "theta_deg,wavelength_nm,Rs,Rd,Xq7ThisIsSecret\n",
+    "wavelength_nm,R,T\n450,Xq7ThisIsSecret,0.1\n",
+    "incidence_deg,wavelength_nm,theta_deg,phi_deg,f,kind\n0,450,10,0,Xq7ThisIsSecret,Xq7ThisIsSecret\n",
+    "frond mode table Xq7ThisIsSecret\nXq7ThisIsSecret Xq7ThisIsSecret\n",
+    std::string("\x93NUMPY\x01\0\x76\0", 10) +
+        "{'descr': [('Xq7ThisIsSecret', '<f4'), ('b', '<f8')], 'fortran_order': False, 'shape': (1,), }" +
+        std::string(64, ' ')};
+
+TEST_F(Hostile, MessagesTellTheFirstEightCharactersOfWordsOfOtherPeoplesFiles) {
+  folder_.write("scene/inside.txt", "");
+  std::filesystem::create_symlink(path("secret"), path("scene/link"));
+  size_t refused = 0;
+  for (const std::string& use : kUses)
+    for (const std::string& secret : kSecrets) {
+      folder_.write("secret", secret);
+      for (const std::string& name : {path("secret"), std::string("../secret"), std::string("link")}) {
+        std::string world = use;
+        for (size_t at; (at = world.find("FILE")) != world.npos;) world.replace(at, 4, name);
+        const std::string scene = folder_.write("scene/s.pbrt", "WorldBegin\n" + world + "\nShape \"disk\"\n").string();
+        const Outcome o = frond_command({"check", scene});
+        refused += o.code == 1;
+        EXPECT_THAT(o.out + o.err, Not(HasSubstr("Xq7ThisIs"))) << world << '\n' << secret;
+      }
+    }
+  EXPECT_EQ(refused, 3 * std::size(kUses) * std::size(kSecrets));
+}
+
+TEST_F(Hostile, WordsOfTheScenesOwnFilesAreQuoted) {
+  folder_.write("scene/sub/own.pbrt", "Material \"aMaterialOfMyOwn\"\nTranslate aNumberThatIsNone 1 2\n");
+  const Outcome o =
+      frond_command({"check", folder_.write("scene/s.pbrt", "WorldBegin\nInclude \"sub/own.pbrt\"\n").string()});
+  EXPECT_THAT(o.err, AllOf(HasSubstr("own.pbrt:2:11: "), HasSubstr("aNumberThatIsNone")));
+}
+
+TEST_F(Hostile, AnIncludedFileThatIsNoSceneIsOneError) {
+  folder_.write("key", "-----BEGIN PRIVATE KEY-----\neUK98iEG8IR3YvDzy012TccHIFEVmg\nE/IPb3LbAi0k0KltrUPBYXwamOeBK\n");
+  const Outcome o =
+      frond_command({"check", folder_.write("s.pbrt", "WorldBegin\nInclude \"key\"\nShape \"sphere\"\n").string()});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, AllOf(HasSubstr("key:1:1: this is no scene file: it begins with \"-----BEG...\""),
+                           Not(HasSubstr("-----BEGI")), Not(HasSubstr("eUK98"))));
+}
+
+TEST_F(Hostile, ALineEndInANameIsEscaped) {
+  const std::string scene = folder_
+                                .write("s.pbrt",
+                                       "WorldBegin\nNamedMaterial \"a\\nfrond: warning\"\nShape \"disk\"\n"
+                                       "Material \"b\\n\\r\"\n")
+                                .string();
+  const Outcome o = frond_command({"check", scene});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err,
+              AllOf(HasSubstr("\"a\\nfrond: warning\""), HasSubstr("\"b\\n\\r\""), Not(HasSubstr("\nfrond: warning"))));
+}
+
+TEST_F(Hostile, ErrorsOfParametersHaveAPlace) {
+  for (const std::string world : {"LightSource \"sky\" \"float elevation\" 1e-6 \"float illuminance\" 1e38",
+                                  "LightSource \"sky\" \"float scale\" 3e38"}) {
+    const Outcome o =
+        frond_command({"check", folder_.write("s.pbrt", "WorldBegin\n" + world + "\nShape \"sphere\"\n").string()});
+    EXPECT_EQ(o.code, 1) << world;
+    EXPECT_THAT(o.err, HasSubstr("s.pbrt:2:")) << world;
+  }
 }
 
 TEST_F(Hostile, TimeLimitsThatEndAMeasurementAreToldOf) {

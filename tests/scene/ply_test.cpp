@@ -299,5 +299,34 @@ TEST(Ply, AFileWithAnyByteChangedIsReadOrRefused) {
     }
 }
 
+/// As MeshLab writes: texture coordinates of the corners of faces, colours of vertices, edges.
+TEST(Ply, WhatIsNotUsedIsNamedWithItsCount) {
+  const PlyMesh mesh = read(R"(ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property float u
+property uchar red
+element face 1
+property list uchar int vertex_indices
+property int face_indices
+property list uchar float texcoord
+property int texnumber
+element edge 2
+property int vertex1
+end_header
+0 0 0 0 255
+1 0 0 0 255
+0 1 0 0 255
+3 0 1 2 7 6 0 0 1 0 0 1 0
+0
+1
+)");
+  EXPECT_EQ(mesh.mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.unused, R"("u", "red" of 3 vertices; "texcoord", "texnumber" of 1 faces; 2 rows of "edge")");
+}
+
 }  // namespace
 }  // namespace frond

@@ -46,9 +46,10 @@ class SunDisc {
   float sine_, chord2_, density_;
 };
 
-SpectrumPtr spectrum(const SkyModel& model, const std::vector<double>& values, double factor) {
+/// Throws InputError at `where` if the values are too large for floats.
+SpectrumPtr spectrum(const SkyModel& model, const std::vector<double>& values, double factor, const Location& where) {
   std::vector<SpectrumPoint> points;
-  for (size_t i = 0; i < values.size(); ++i) points.push_back({model.nm[i], values[i] * factor});
+  for (size_t i = 0; i < values.size(); ++i) points.push_back({model.nm[i], values[i] * factor, where});
   return make_tabulated(points);
 }
 
@@ -107,9 +108,10 @@ class SkyLight final : public EnvironmentLight {
       total[i] = model.direct_normal[i] * std::max(0.0, model.toward_sun.z) + model.diffuse[i];
       scalar[i] = model.direct_normal[i] + model.diffuse[i] * per_diffuse + 2 * p.real("albedo") * total[i];
     }
-    const double scale = double(light_scale(p, "illuminance", photometric(*spectrum(model, total, 1))));
-    total_ = spectrum(model, total, scale);
-    scalar_illuminance_ = photometric(*spectrum(model, scalar, scale));
+    const double scale = double(light_scale(p, "illuminance", photometric(*spectrum(model, total, 1, p.where()))));
+    const Location& brightness = p.where(p.given("illuminance") ? "illuminance" : "scale");
+    total_ = spectrum(model, total, scale, brightness);
+    scalar_illuminance_ = photometric(*spectrum(model, scalar, scale, brightness));
     spectra_ = SkySpectra(model, scale / integrals.irradiance, scale * model.horizon_factor() / disc_.projected());
     // Radiance of the ground: reflectance times irradiance over pi.
     const double reflectance = p.real("albedo") / kPiD, sine = std::max(0.0, model.toward_sun.z);

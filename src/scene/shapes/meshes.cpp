@@ -103,6 +103,7 @@ MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
       p.warn("filename",
              fmt::format("{} faces are neither triangles nor quadrilaterals and are left out, as in pbrt-v4",
                          file.ignored));
+    if (!file.unused.empty()) p.warn("filename", fmt::format("the file has data that are not used: {}", file.unused));
     return surfaces_of(std::move(file), placement);
   } catch (const InputError& error) {
     fail(p.where("filename"), "{}", error.what());

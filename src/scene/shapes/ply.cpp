@@ -1,5 +1,7 @@
 #include "scene/shapes/ply.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,6 +81,33 @@ struct MeshLayout {
     if (face_element.count == 0) fail(face_element.where, "the mesh has no faces");
   }
 };
+
+/// Names what the body has beside the mesh. pbrt-v4's "face_indices" are for Ptex and silently ignored, as parameter
+/// "faceIndices" of a triangle mesh is.
+std::string unused_content(const PlyHeader& header, const MeshLayout& layout) {
+  constexpr size_t kMostNamed = 8;
+  std::vector<std::string> all;
+  for (const PlyElement& element : header.elements) {
+    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+    if (element.count == 0) continue;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& p = element.properties[i];
+      const bool is_used = is_vertex ? layout.vertex.slots[i] != kNoSlot : i == layout.indices;
+      if (!is_used && p.name != "face_indices") names.push_back(fmt::format("\"{}\"", excerpt(p.name, p.where)));
+    }
+    const size_t more = names.size() - std::min(names.size(), kMostNamed);
+    names.resize(names.size() - more);
+    const std::string rest = more > 0 ? fmt::format(" and {} more", more) : "";
+    if (!is_vertex && !is_face)
+      all.push_back(fmt::format("{} rows of \"{}\"", element.count, excerpt(element.name, element.where)));
+    else if (!names.empty())
+      all.push_back(
+          fmt::format("{}{} of {} {}", fmt::join(names, ", "), rest, element.count, is_face ? "faces" : "vertices"));
+    if (all.size() == kMostNamed) break;
+  }
+  return fmt::format("{}", fmt::join(all, "; "));
+}
 
 template <class Source>
 class BodyReader {
@@ -192,8 +221,8 @@ class BodyReader {
   /// Throws InputError for a count that the rest of the file cannot contain.
   void skip_values(const PlyProperty& p, double count) {
     if (!(count >= 0 && count <= static_cast<double>(source_.bytes_left())) || count != std::floor(count))
-      fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", excerpt(p.name, p.where),
-                           count));
+      fail_row(
+          fmt::format("\"{}\" is a list of {} values, which the file does not hold", excerpt(p.name, p.where), count));
     if (!source_.skip(p.type, static_cast<size_t>(count))) fail_row(source_.problem());
   }
 
@@ -219,6 +248,7 @@ PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
   const Location end{file, header.lines, 1};
   const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
   PlyMesh result;
+  result.unused = unused_content(header, layout);
   const auto read_from = [&](auto source) { BodyReader(source, header, layout, result).read(); };
   if (header.format == PlyFormat::ascii)
     read_from(ply::AsciiSource(bytes, header, file));

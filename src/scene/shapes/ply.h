@@ -13,12 +13,13 @@ struct PlyMesh {
   TriangleMesh mesh;
   std::vector<std::array<uint32_t, 4>> quads;
   size_t ignored = 0;  ///< number of faces with other numbers of corners, which are skipped
+  std::string unused;  ///< names and counts of other properties and elements, which are skipped, for a message
 };
 
 /// Reads triangles and quadrilaterals from a PLY file: ASCII, or binary in either byte order, or compressed by gzip;
 /// `vertex` with x y z, optionally nx ny nz and texture coordinates (u v, s t, texture_u texture_v, texture_s
-/// texture_t); `face` with vertex_indices or vertex_index. Other content is skipped. Memory is a small multiple of the
-/// file's size. Throws InputError with line and column (header, ASCII) or byte offset (binary).
+/// texture_t); `face` with vertex_indices or vertex_index. Other content is skipped and named. Memory is a small
+/// multiple of the file's size. Throws InputError with line and column (header, ASCII) or byte offset (binary).
 PlyMesh read_ply(const std::filesystem::path& path);
 
 /// Same for bytes in memory; `name` names the file in errors.

@@ -76,7 +76,8 @@ PlyType type_of(const Word& word) {
 
 PlyFormat format_of(const std::vector<Word>& line) {
   check_words(line, 3, "format, ascii or binary_little_endian or binary_big_endian, 1.0");
-  if (line[2].text != "1.0") fail(line[2].where, "version {} of the format is not 1.0", excerpt(line[2].text, line[2].where));
+  if (line[2].text != "1.0")
+    fail(line[2].where, "version {} of the format is not 1.0", excerpt(line[2].text, line[2].where));
   constexpr std::string_view kNames[] = {"ascii", "binary_little_endian", "binary_big_endian"};
   const auto found = std::find(std::begin(kNames), std::end(kNames), line[1].text);
   if (found == std::end(kNames))
@@ -100,7 +101,8 @@ PlyProperty property_of(const std::vector<Word>& line) {
   if (line.size() > 1 && line[1].text == "list") {
     check_words(line, 5, "property list, type of the length, type of the values, name");
     const PlyType count_type = type_of(line[2]);
-    if (!is_integer(count_type)) fail(line[2].where, "the length of a list is an integer, not {}", excerpt(line[2].text, line[2].where));
+    if (!is_integer(count_type))
+      fail(line[2].where, "the length of a list is an integer, not {}", excerpt(line[2].text, line[2].where));
     return {std::string(line[4].text), type_of(line[3]), count_type, line[0].where};
   }
   check_words(line, 3, "property, its type, its name");
@@ -109,7 +111,8 @@ PlyProperty property_of(const std::vector<Word>& line) {
 
 void add_element(PlyHeader& header, PlyElement element) {
   for (const PlyElement& other : header.elements)
-    if (other.name == element.name) fail(element.where, "element \"{}\" is declared twice", excerpt(element.name, element.where));
+    if (other.name == element.name)
+      fail(element.where, "element \"{}\" is declared twice", excerpt(element.name, element.where));
   header.elements.push_back(std::move(element));
 }
 
@@ -117,7 +120,8 @@ void add_property(PlyHeader& header, PlyProperty property) {
   if (header.elements.empty()) fail(property.where, "a property before any element");
   auto& properties = header.elements.back().properties;
   for (const PlyProperty& other : properties)
-    if (other.name == property.name) fail(property.where, "property \"{}\" is declared twice", excerpt(property.name, property.where));
+    if (other.name == property.name)
+      fail(property.where, "property \"{}\" is declared twice", excerpt(property.name, property.where));
   properties.push_back(std::move(property));
 }
 
