@@ -153,7 +153,8 @@ def loads(text, folder=".", *, session=None, **over):
 
 
 def read_image(path):
-    """Reads an image file. Returns (names of the channels, float32 array `[row][column][channel]`). Raises InputError."""
+    """Reads an image file. Returns (names of the channels, float32 array `[row][column][channel]`). Of several parts (EXR) or
+    pages (TIFF) it reads the first; a warning names the others. Raises InputError."""
     return _frond.read_image(path_text(path))
 
 

@@ -1,5 +1,6 @@
 import logging
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -20,6 +21,14 @@ def test_an_image_is_that_of_the_command(scene_text, tmp_path):
     (names, ours), (_, theirs) = (frond.read_image(tmp_path / f"{name}.exr") for name in ("module", "command"))
     assert numpy.array_equal(ours, theirs)
     assert numpy.array_equal(ours[:, :, names.index("G")], image["G"])
+
+
+def test_parts_that_are_not_read_are_named(caplog):
+    parts = pathlib.Path(__file__).resolve().parents[2] / "tests" / "public" / "exr-parts" / "parts.exr"
+    with caplog.at_level(logging.WARNING, "frond"):
+        names, values = frond.read_image(parts)
+    assert (list(names), values.shape) == (["R", "G", "B"], (2, 2, 3))
+    assert "2 are left out: \"depth\", \"diffuse_of_leaves\"" in caplog.text
 
 
 def test_channels_and_arrays(scene_text):

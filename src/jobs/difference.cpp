@@ -24,9 +24,7 @@ constexpr size_t kColors = 3;
 constexpr std::array<const char*, kColors + 1> kChannels{"red", "green", "blue", "all"};
 constexpr JobParam kParams[] = {
     files_param("images", "A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.", 4),
-    output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is, black where a "
-                 "value is not finite.",
-                 false),
+    output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
     JobParam("scale", real, "Luminance difference that is drawn in full colour.",
              {.default_value = "0.1", .range = kAboveZero}),
     kJsonParam,

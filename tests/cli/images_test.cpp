@@ -66,7 +66,7 @@ TEST_F(Images, SharesOfTheImageAreAtMostAll) {
   Image pixels(4, 4, {"R", "G", "B"});
   for (const float v : {kInfinity, float(NAN), -kInfinity}) {
     std::ranges::fill(pixels.pixels, v);
-    write_image(path("a.exr"), pixels, {.color_space = "linear SMPTE-C"});
+    write_image(path("a.exr"), pixels, {.color_space = "linear SMPTE-C", .text = {}});
     for (const char* exposure : {"0", "auto"}) {
       const Outcome o = frond_command({"convert", path("a.exr"), "-o", path("a.png"), "--exposure", exposure});
       EXPECT_EQ(o.code, 0);
