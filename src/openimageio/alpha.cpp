@@ -5,13 +5,12 @@
 
 namespace frond {
 
-bool is_multiplied(const EncodedImage& file, std::string_view format, const OIIO::ImageSpec& spec) {
+bool is_multiplied(const EncodedImage& file, std::string_view format, int tga_alpha_type) {
   constexpr uint16_t kExtraSamples = 338;
   constexpr uint64_t kAssociatedAlpha = 1;  // TIFF 6.0
   constexpr int kPremultiplied = 4;         // TGA 2.0, field 24
-  if (spec.alpha_channel < 0) return false;
   if (format == "tiff") return tiff_number(file.bytes, kExtraSamples) == kAssociatedAlpha;
-  return format == "targa" && spec.get_int_attribute("targa:alpha_type") == kPremultiplied;
+  return format == "targa" && tga_alpha_type == kPremultiplied;
 }
 
 void divide_by_alpha(Image& image, size_t alpha, bool eight_bit) {

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include "core/image.h"
 #include "openimageio/header_checks.h"
 
 namespace frond {
 
-/// Whether a TIFF or TGA states that its colours are multiplied by its alpha, and OpenImageIO leaves them so. Those of
-/// an EXR are by definition, and stay so, as in pbrt-v4.
-bool is_multiplied(const EncodedImage& file, std::string_view format, const OIIO::ImageSpec& spec);
+/// Whether a TIFF or TGA with alpha states that its colours are multiplied by it, and OpenImageIO leaves them so. Those
+/// of an EXR are by definition, and stay so, as in pbrt-v4. `tga_alpha_type`: OpenImageIO's "targa:alpha_type".
+bool is_multiplied(const EncodedImage& file, std::string_view format, int tga_alpha_type);
 
 /// Divides the colours by the alpha; where it is 0, they are not known and stay as they are. `eight_bit`: values are
 /// rounded to 1/255.

@@ -206,7 +206,8 @@ class OpenImageIOCodec final : public ImageCodec {
       ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
                      spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
       check(read_pixels(*in, spec, file.image), in->geterror());
-      if (is_multiplied(encoded, format, spec)) divide_by_alpha(file.image, size_t(spec.alpha_channel), file.eight_bit);
+      if (spec.alpha_channel >= 0 && is_multiplied(encoded, format, spec.get_int_attribute("targa:alpha_type")))
+        divide_by_alpha(file.image, size_t(spec.alpha_channel), file.eight_bit);
       file.left_out = left_out_of(*in, path);
       return file;
     } catch (const InputError&) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/stop.h"
+#include "scene/format/known_names.h"
 #include "scene/format/plugin_text.h"
 
 namespace frond {
@@ -230,7 +231,7 @@ class GeometryBuilder {
     std::vector<std::string_view> names;
     for (const auto& [name, place] : by_name_) names.push_back(name);
     fail(where, "there is no object \"{}\"{}", object,
-         names.empty() ? "; ObjectBegin makes them" : suggestion(object, names));
+         names.empty() ? "; ObjectBegin makes them" : suggested_name(description_, object, names));
   }
 
   const SceneDescription& description_;

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/problems.h"
+#include "scene/format/known_names.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
 #include "spectra/analytic.h"
@@ -151,7 +152,8 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
 
 void SceneResolver::fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const {
-  const std::string message = fmt::format("there is no {} \"{}\"{}", kind, name, suggestion(name, names));
+  const std::string message =
+      fmt::format("there is no {} \"{}\"{}", kind, name, suggested_name(description_, name, names));
   if (description_.may_be_unread(name)) throw Consequence(where, message);
   fail(where, "{}", message);
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 
+#include "core/excerpt.h"
 #include "core/parallel.h"
 #include "system/file_uses.h"
 
@@ -25,6 +26,8 @@ struct Source {
   const Location& where;
   std::string_view what;
 
+  /// The path in a message without quotation marks.
+  std::string shown() const { return where.file && is_foreign(*where.file) ? excerpt(path, where) : path; }
   /// Throws InputError. `plain` is the complete message for a file without a description.
   [[noreturn]] void refuse(std::string_view reason, std::string_view plain) const {
     if (what.empty()) fail(where, "{}", plain);
@@ -32,7 +35,7 @@ struct Source {
   }
   [[noreturn]] void refuse(std::string_view attempt, int error) const {
     const char* reason = std::strerror(error);
-    refuse(reason, fmt::format("cannot {} {}: {}", attempt, path, reason));
+    refuse(reason, fmt::format("cannot {} {}: {}", attempt, shown(), reason));
   }
 };
 
@@ -40,11 +43,11 @@ struct Source {
 void check_kind(const Source& source) {
   std::error_code error;
   const fs::file_type type = fs::status(source.path, error).type();
-  if (type == fs::file_type::not_found) source.refuse(std::strerror(ENOENT), "there is no file " + source.path);
+  if (type == fs::file_type::not_found) source.refuse(std::strerror(ENOENT), "there is no file " + source.shown());
   if (type == fs::file_type::none) source.refuse("open", error.value());
-  if (type == fs::file_type::directory) source.refuse("it is a folder", source.path + " is a folder, not a file");
+  if (type == fs::file_type::directory) source.refuse("it is a folder", source.shown() + " is a folder, not a file");
   if (type != fs::file_type::regular && type != fs::file_type::fifo)
-    source.refuse("it is no regular file", source.path + " is not a regular file");
+    source.refuse("it is no regular file", source.shown() + " is not a regular file");
 }
 
 File open(const Source& source) {

@@ -73,6 +73,28 @@ const std::string kSecrets[] = {
     "Material \"Xq7ThisIsSecret\"\nShape \"Xq7ThisIsSecret\" \"float Xq7ThisIsSecret\" "
     "1\nXq7ThisIsSecret\nNamedMaterial "
     "\"Xq7ThisIsSecret\"\nMaterial \"diffuse\" \"Xq7ThisIsSecret reflectance\" 1\nRotate Xq7ThisIsSecret\n",
+    "Option \"Xq7ThisIsSecret\" Xq7ThisIsSecret\nOption \"integer Xq7ThisIsSecret\" 5\nColorSpace \"Xq7ThisIsSecret\"\n"
+    "Attribute \"Xq7ThisIsSecret\" \"float x\" 1\nAttribute \"shape\" \"float Xq7ThisIsSecret\" 1\n"
+    "CoordSysTransform \"Xq7ThisIsSecret\"\nActiveTransform Xq7ThisIsSecret\nInclude \"Xq7ThisIsSecret\"\n"
+    "Accelerator \"Xq7ThisIsSecret\"\nTexture \"Xq7ThisIsSecret\" \"Xq7ThisIsSecret\" \"Xq7ThisIsSecret\"\n",
+    "LightSource \"Xq7ThisIsSecret\"\nAreaLightSource \"Xq7ThisIsSecret\"\nObjectInstance \"Xq7ThisIsSecret\"\n"
+    "MediumInterface \"Xq7ThisIsSecret\" \"\"\nMakeNamedMedium \"Xq7ThisIsSecret\" \"string type\" "
+    "\"Xq7ThisIsSecret\"\n"
+    "Material \"diffuse\" \"spectrum reflectance\" \"Xq7ThisIsSecret\" \"texture Xq7ThisIsSecret\" "
+    "\"Xq7ThisIsSecret\"\n"
+    "Shape \"sphere\" \"texture alpha\" \"Xq7ThisIsSecret\"\nShape \"disk\" \"float radius\" Xq7ThisIsSecret\n",
+    "Material \"diffuse\" \"texture reflectance\" \"Xq7ThisIsSecret\"\nShape \"plymesh\" \"string filename\" "
+    "\"Xq7ThisIsSecret\"\nLightSource \"infinite\" \"string filename\" \"Xq7ThisIsSecret\"\n"
+    "Material \"mix\" \"string materials\" [ \"Xq7ThisIsSecret\" \"Xq7ThisIsSecret\" ]\nShape \"sphere\"\n"
+    "Material \"abm\" \"string specimen\" \"Xq7ThisIsSecret\"\nShape \"sphere\"\n",
+    "MakeNamedMaterial \"Xq7ThisIsSecret\" \"string type\" \"diffuse\"\nNamedMaterial \"Xq7ThisIsSecretTwo\"\n"
+    "Shape \"sphere\"\nNamedMaterial \"other\"\nShape \"sphere\"\nCoordinateSystem \"Xq7ThisIsSecret\"\n"
+    "CoordSysTransform \"other\"\nObjectBegin \"Xq7ThisIsSecret\"\nObjectEnd\nObjectInstance \"other\"\n"
+    "MakeNamedMedium \"Xq7ThisIsSecret\" \"string type\" \"homogeneous\"\nMediumInterface \"other\" \"\"\nShape "
+    "\"sphere\"\n",
+    "Texture \"Xq7ThisIsSecret\" \"spectrum\" \"constant\"\nMaterial \"diffuse\" \"texture reflectance\" \"other\"\n"
+    "Shape \"sphere\"\nMakeNamedMaterial \"Xq7ThisIsSecret\" \"string type\" \"diffuse\"\n"
+    "Material \"mix\" \"string materials\" [ \"other\" \"else\" ]\nShape \"sphere\"\n",
     "Translate Xq7ThisIsSecret 1 2\nMakeNamedMaterial \"Xq7ThisIsSecret\" \"string type\" \"Xq7ThisIsSecret\"\n",
     "ply\nformat ascii 1.0\nelement Xq7ThisIsSecret Xq7ThisIsSecret\n",
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty Xq7ThisIsSecret x\n",
@@ -137,7 +159,9 @@ TEST_F(Hostile, ALineEndInANameIsEscaped) {
 
 TEST_F(Hostile, ErrorsOfParametersHaveAPlace) {
   for (const std::string world : {"LightSource \"sky\" \"float elevation\" 1e-6 \"float illuminance\" 1e38",
-                                  "LightSource \"sky\" \"float scale\" 3e38"}) {
+                                  "LightSource \"sky\" \"float scale\" 3e38",
+                                  "LightSource \"distant\" \"float illuminance\" 3e38 \"float scale\" 3e38",
+                                  "LightSource \"point\" \"float power\" 3e38 \"float scale\" 3e38"}) {
     const Outcome o =
         frond_command({"check", folder_.write("s.pbrt", "WorldBegin\n" + world + "\nShape \"sphere\"\n").string()});
     EXPECT_EQ(o.code, 1) << world;

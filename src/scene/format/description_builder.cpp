@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "core/log.h"
+#include "scene/format/known_names.h"
 #include "scene/format/plugin_text.h"
 #include "scene/math/motion.h"
 #include "spectra/color/color_space.h"
@@ -82,7 +83,7 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
     if (name.is_defined || scene_.may_be_unread(text)) continue;
     problems.attempt([&, &text = text, &name = name] {
       fail(name.first_use, "there is no object \"{}\"{}", text,
-           defined.empty() ? "; ObjectBegin makes them" : suggestion(text, defined));
+           defined.empty() ? "; ObjectBegin makes them" : suggested_name(scene_, text, defined));
     });
   }
 }
@@ -102,7 +103,7 @@ void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
     if (name.is_defined) continue;
     const std::string message =
         fmt::format("there is no named material \"{}\"{}", text,
-                    defined.empty() ? "; MakeNamedMaterial makes them" : suggestion(text, defined));
+                    defined.empty() ? "; MakeNamedMaterial makes them" : suggested_name(scene_, text, defined));
     scene_.materials[name.index] = {"", {"diffuse", name.first_use, {}}};
     if (scene_.may_be_unread(text)) continue;
     if (is_used[name.index])
@@ -129,7 +130,7 @@ void DescriptionBuilder::settle_unknown_media(Problems& problems) {
     if (scene_.may_be_unread(text)) continue;
     const std::string message =
         fmt::format("there is no medium \"{}\"{}", text,
-                    defined.empty() ? "; MakeNamedMedium makes them" : suggestion(text, defined));
+                    defined.empty() ? "; MakeNamedMedium makes them" : suggested_name(scene_, text, defined));
     if (is_used[name.index])
       problems.add(InputError(name.first_use, message));
     else
@@ -227,7 +228,7 @@ void DescriptionBuilder::recall_transform(const std::string& name, const Locatio
   std::vector<std::string_view> names;
   for (const auto& [known, transform] : systems) names.push_back(known);
   log_.warn(where, fmt::format("unknown coordinate system \"{}\"{}; the transform stays as it is", name,
-                               suggestion(name, names)));
+                               suggested_name(scene_, name, names)));
 }
 
 /// Warns once: files written for pbrt-v3 expect the material to be kept.

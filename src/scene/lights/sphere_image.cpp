@@ -1,5 +1,6 @@
 #include "scene/lights/sphere_image.h"
 
+#include <limits>
 #include <numbers>
 
 #include "core/error.h"
@@ -42,7 +43,11 @@ float sphere_image_scale(const Params& p, const ColorImage& file) {
   const double own = illuminance_of(file);
   if (!(own > 0)) fail(p.where("illuminance"), "the upper half of the image is black: it has no illuminance to scale");
   p.warn("illuminance", "as in pbrt-v4, a surface under the upper half of the image gets twice this illuminance");
-  return float(p.real("scale") * *stated / own);
+  const double scale = p.real("scale") * *stated / own;
+  if (!(scale <= double(std::numeric_limits<float>::max())))
+    fail(p.where("illuminance"), "the image has the illuminance {:.4g}: the factor to the stated one is beyond {:.2g}",
+         own, std::numeric_limits<float>::max());
+  return float(scale);
 }
 
 }  // namespace frond
