@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <list>
 
 #include "jobs/record/common_params.h"
 #include "scene/format/words.h"
@@ -10,6 +11,7 @@
 #include "study/compare/report/report.h"
 #include "study/compare/report/tables.h"
 #include "study/compare/report/verdict.h"
+#include "system/file_uses.h"
 #include "system/machine.h"
 
 namespace frond {
@@ -159,7 +161,12 @@ Result compare_models(const JobRun& run) {
   if (args.given("exposure")) request.exposure_stops = args.real("exposure");
   if (args.given("target")) request.target = target_of(args);
   const std::string output = args.text("output");
-  if (!output.empty()) compare::check_report_folder(output);
+  std::list<PlannedOutput> report;
+  if (!output.empty()) {
+    compare::check_report_folder(output);
+    for (const std::string& name : compare::report_files())
+      report.emplace_back("the report", (std::filesystem::path(output) / name).string());
+  }
   compare::StudyOptions options{.scene = args.text("scene"), .wavelengths = wavelengths_text(args)};
   options.leaves = args.texts("leaf");
   options.unsupported = unsupported_of(args);

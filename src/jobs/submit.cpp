@@ -195,6 +195,7 @@ Result submit(const JobRun& run) {
   if (args.text("scene") == "-") fail({}, "each task reads the scene: name a file instead of standard input");
   if (args.given("max-rms"))
     fail({}, "{} needs all samples in one place: the tasks of a job have fixed ranges", args.spelled("max-rms"));
+  if (args.given("json")) fail({}, "{}: all tasks would write this file", args.spelled("json"));
   if (tasks > samples) fail({}, "{} tasks cannot share {} samples: each needs at least one", tasks, samples);
   const fs::path output = image_path(args, engine);
   if (args.flag("run") && !is_in_path(std::string(engine.program)))

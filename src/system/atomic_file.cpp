@@ -33,6 +33,14 @@ int open_nameless(const fs::path& folder) {
   return -1;
 }
 
+/// Whether the path is that of a device or an open stream, as /dev/stdout is: a file of this name would replace the one
+/// that the stream writes to.
+bool is_stream(const fs::path& path) {
+  std::error_code error;
+  const std::string folder = fs::canonical(folder_of(path), error).string();
+  return !error && (folder == "/dev" || folder.starts_with("/proc/"));
+}
+
 }  // namespace
 
 NewFile::NewFile(const fs::path& path, const fs::path& shown)
@@ -90,7 +98,8 @@ void check_replaceable(const fs::path& path) {
     fail({}, "cannot write \"{}\": there is no folder \"{}\"", path.string(), folder.string());
   if (fs::is_directory(target, error)) fail({}, "cannot write \"{}\": it is a folder", path.string());
   if (fs::exists(target, error)) {
-    if (!fs::is_regular_file(target, error)) fail({}, "cannot write \"{}\": it is no regular file", path.string());
+    if (!fs::is_regular_file(target, error) || is_stream(path))
+      fail({}, "cannot write \"{}\": it is no regular file", path.string());
     if (access(target.c_str(), W_OK) != 0) fail_to_write(path, errno);
   }
   if (error) fail_to_write(path, error.value());  // such as a name that is too long

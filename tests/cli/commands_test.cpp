@@ -282,7 +282,8 @@ TEST_F(Commands, WhatIsMeantIsAsked) {
   EXPECT_THAT(frond_command({"spectrophotometer", "abm"}).err,
               HasSubstr("--wavelengths is needed: Wavelengths, as in"));
   EXPECT_THAT(frond_command({"difference", "a", "b"}).err, HasSubstr("2 were given: A1 A2 B1 B2: two halves"));
-  EXPECT_THAT(frond_command({"compare", path("scene.pbrt"), "-o", path("scene.pbrt")}).err, HasSubstr("is a file"));
+  EXPECT_THAT(frond_command({"compare", path("scene.pbrt"), "-o", path("scene.pbrt")}).err,
+              HasSubstr("--output would replace the input"));
   EXPECT_THAT(frond_command({"canopy", "-o", path("c.npy"), "--scale", "50"}).err,
               HasSubstr("a leaf has the area 7853.98 (--scale 50), the plot 100: no leaf fits"));
 }

@@ -69,6 +69,7 @@ TEST_F(Outputs, TwoThatAreOneFileAreRefusedByWhateverNames) {
   folder_.write("old.json", "{}");
   fs::create_hard_link("old.json", "hard.exr");
   fs::create_directory("sub");
+  fs::create_directory("report");
   fs::create_directory_symlink("sub", "link");
   const std::string same = "write to the same file";
   for (const Words& names :
@@ -80,6 +81,9 @@ TEST_F(Outputs, TwoThatAreOneFileAreRefusedByWhateverNames) {
   EXPECT_THAT(refusal({"fit", "in.csv", "-o", "fit.pbrt", "--json", "./fit.pbrt"}), HasSubstr(same));
   EXPECT_THAT(refusal({"goniophotometer", "diffuse", "--wavelengths", "550", "--map", "m.svg", "--csv", "./m.svg"}),
               HasSubstr(same));
+  EXPECT_THAT(refusal({"compare", "scene.pbrt", "-o", "report", "--csv", "./report/compare.csv"}), HasSubstr(same));
+  EXPECT_THAT(refusal({"submit", "scene.pbrt", "-o", "a.exr", "--spp", "2", "--tasks", "2", "--slurm", "--json", "j"}),
+              HasSubstr("all tasks would write this file"));
   EXPECT_THAT(refusal({"spectrophotometer", "diffuse", "--wavelengths", "550", "--csv", "-", "--json", "-"}),
               HasSubstr("only one of --csv and --json can go to standard output"));
 }

@@ -142,6 +142,22 @@ class FullDisk(FrondTest):
         self.check_failure(err, self.folder / "a.exr.part", errno.EFBIG)
         self.assertEqual(self.files(), ["scene.pbrt"])
 
+    def test_a_folder_that_does_not_fit_stays_as_it_was(self):
+        """Man pages and the export of a scene: the first files fit, a later one does not."""
+        for command, limit in ((["man", "--folder"], 1 << 12), (["export", str(self.scene), "--format", "mitsuba", "-o"], 1 << 11)):
+            new, old = self.folder / "new" / command[0], self.folder / f"old-{command[0]}"
+            self.run_to_end([FROND, *command, str(old)])
+            for path in old.rglob("*"):
+                if path.is_file():
+                    path.write_bytes(OLD)
+            before = sorted((path, path.is_file() and path.read_bytes()) for path in old.rglob("*"))
+            for folder in (new, old):
+                _, err = self.run_to_end([FROND, *command, str(folder)], 1, preexec_fn=limit_files(limit))
+                self.assertIn(f'cannot write "{folder}/', err)
+                self.assertIn(os.strerror(errno.EFBIG), err)
+            self.assertFalse(new.parent.exists())
+            self.assertEqual(sorted((path, path.is_file() and path.read_bytes()) for path in old.rglob("*")), before)
+
     def test_a_file_system_that_is_full(self):
         place = self.small_file_system("1m")
         image = place / "a.exr"

@@ -119,9 +119,16 @@ std::string page(const Comparison& c, const std::vector<ReportChart>& charts) {
 
 }  // namespace
 
+std::vector<std::string> report_files() {
+  std::vector<std::string> names{"compare.csv", "compare.json", "index.html"};
+  for (const std::string chart : {"rms", "rms-leaf", "bands", "flip"})
+    for (const char* extension : {".svg", ".png"}) names.push_back(chart + extension);
+  return names;
+}
+
 void check_report_folder(const std::filesystem::path& folder) {
   const NewFiles files(folder);
-  for (const char* name : {"rms.svg", "rms.png", "compare.csv", "compare.json", "index.html"}) files.check(name);
+  for (const std::string& name : report_files()) files.check(name);
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& c, const ComparisonData& data) {

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "study/compare/report/data_files.h"
 
 namespace frond::compare {
+
+/// Returns the names of all files that a report may have.
+std::vector<std::string> report_files();
 
 /// Throws InputError if the folder, or a file of the report in it, cannot be written. Leaves no files.
 void check_report_folder(const std::filesystem::path& folder);
