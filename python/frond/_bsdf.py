@@ -3,8 +3,16 @@
 import math
 
 from . import _frond
-from ._measure import _numbers, _session_of, material_text
+from ._measure import _session_of, bands_of, material_text
 from ._session import path_text
+from ._values import array_of, number, reals, whole
+
+
+def _seed_of(seed):
+    found = whole(seed, "seed")
+    if found >= 1 << 64:
+        raise ValueError(f"seed: a whole number from 0 to 2^64 - 1 is needed, not {found}")
+    return found
 
 
 class FlatBsdf:
@@ -15,7 +23,7 @@ class FlatBsdf:
     """
 
     def __init__(self, material, wavelengths, *, session=None):
-        self.wavelengths = _numbers(wavelengths)
+        self.wavelengths = bands_of(wavelengths)
         # A path has up to four wavelengths.
         groups = [self.wavelengths[i:i + 4] for i in range(0, max(len(self.wavelengths), 1), 4)]
         self._bsdfs = [_frond.FlatBsdf(_session_of(session), material_text(material), group) for group in groups]
@@ -24,11 +32,14 @@ class FlatBsdf:
     is_reciprocal = property(lambda self: self._bsdfs[0].is_reciprocal, doc="True if the material claims f(a, b) = f(b, a).")
 
     @staticmethod
-    def _directions(*directions):
+    def _directions(**directions):
         import numpy
-        arrays = [numpy.atleast_2d(numpy.asarray(d, dtype=numpy.float32)) for d in directions]
-        shape = numpy.broadcast_shapes(*(a.shape for a in arrays))
-        return [numpy.ascontiguousarray(numpy.broadcast_to(a, shape)) for a in arrays]
+        arrays = {name: numpy.atleast_2d(array_of(d, name, "float32")) for name, d in directions.items()}
+        for name, array in arrays.items():
+            if array.ndim != 2 or array.shape[1] != 3:
+                raise ValueError(f"{name}: directions are an array [n][3], not of shape {array.shape}")
+        shape = numpy.broadcast_shapes(*(a.shape for a in arrays.values()))
+        return [numpy.ascontiguousarray(numpy.broadcast_to(a, shape)) for a in arrays.values()]
 
     def _of_one_path(self):
         if len(self._bsdfs) > 1:
@@ -38,18 +49,18 @@ class FlatBsdf:
     def f(self, wo, wi, *, seed=0):
         """Returns the BSDF value in 1/sr, without the cosine: float32 `[n][wavelength]`."""
         import numpy
-        pairs = self._directions(wo, wi)
+        pairs, seed = self._directions(wo=wo, wi=wi), _seed_of(seed)
         return numpy.concatenate([bsdf.f(*pairs, seed) for bsdf in self._bsdfs], axis=1)
 
     def pdf(self, wo, wi):
         """Returns the probability density of `sample` in 1/sr: float32 `[n]`. Raises ValueError for more than four
         wavelengths."""
-        return self._of_one_path().pdf(*self._directions(wo, wi))
+        return self._of_one_path().pdf(*self._directions(wo=wo, wi=wi))
 
     def sample(self, wo, *, seed=0):
         """Samples a direction for each wo. Returns (wi `[n][3]`, weights f |cos| / pdf `[n][wavelength]`, pdf `[n]` in 1/sr);
         pdf is 0 where nothing is scattered. Raises ValueError for more than four wavelengths."""
-        return self._of_one_path().sample(*self._directions(wo), seed)
+        return self._of_one_path().sample(*self._directions(wo=wo), _seed_of(seed))
 
 
 def bsdf(material, wavelengths=(608, 551, 455), *, session=None):
@@ -70,7 +81,12 @@ def leaf_table(material, wavelengths, *, tolerance=5e-4, depths=None, session=No
     """Returns the LeafTable of a `leaf_solved`. material: text, "leaf_solved,specimen=maize,incident=reciprocal". wavelengths:
     in nm. tolerance: largest error of pi f. depths: (least, most) optical depth of the mesophyll, for leaves whose chemistry
     varies. Raises InputError."""
-    return LeafTable(_frond.leaf_table(_session_of(session), material_text(material), sorted(_numbers(wavelengths)), tolerance, depths))
+    if depths is not None:
+        depths = tuple(reals(depths, "depths"))
+        if len(depths) != 2:
+            raise ValueError(f"depths: (least, most) is needed, {len(depths)} numbers are given")
+    return LeafTable(_frond.leaf_table(_session_of(session), material_text(material), sorted(bands_of(wavelengths)),
+                                       float(number(tolerance, "tolerance")), depths))
 
 
 class Bsdf:

@@ -5,19 +5,24 @@ import os
 import re
 
 from . import _frond
-from ._jobs import FUNCTIONS, _table, no_text, run
-from ._session import checked_session, checked_text, path_text
+from ._jobs import FUNCTIONS, JOBS, _table, by_alias, no_text, run
+from ._session import Scene, checked_session, checked_text, path_text
+from ._values import is_array, named, number, reals, scalar, table_text, texts, whole
 
 
 def material_text(material):
     """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas. Raises TypeError."""
-    if not isinstance(material, str) and not hasattr(material, "__iter__"):
+    material = scalar(material)
+    if isinstance(material, str):
+        return checked_text(material, "material")
+    if isinstance(material, (bytes, Scene)) or not hasattr(material, "__iter__") or hasattr(material, "items") and not is_array(material):
         raise TypeError(f"material: {no_text(material)}")
-    return checked_text(material if isinstance(material, str) else ",".join(str(part) for part in material), "material")
+    return ",".join(checked_text(scalar(part), "material") for part in texts(material, "material"))
 
 
-def _numbers(values):
-    return [float(v) for v in (values if getattr(values, "ndim", 1) and hasattr(values, "__iter__") else [values])]
+def bands_of(values):
+    """Returns wavelengths in nm as floats. Raises TypeError or ValueError."""
+    return reals(values, "wavelengths", "nm")
 
 
 def _session_of(session):
@@ -29,7 +34,7 @@ def names(kind="material", *, session=None):
     return checked_session(session).names(kind)
 
 
-def _with_keywords_of(name):
+def _with_keywords_of(name, returns=inspect.Signature.empty):
     """Decorator: adds the keywords and the documentation of a job to a function that passes them on."""
     def decorate(function):
         job, kinds = FUNCTIONS[name], inspect.Parameter
@@ -39,9 +44,20 @@ def _with_keywords_of(name):
                for p in inspect.signature(function).parameters.values() if p.kind is not kinds.VAR_KEYWORD]
         names = {p.name for p in own}
         more = [p.replace(kind=kinds.KEYWORD_ONLY) for p in of_job.values() if p.name not in names]
-        function.__signature__ = inspect.Signature(sorted(own + more, key=lambda p: p.kind))
-        function.__doc__ = "\n\n".join(filter(None, (inspect.getdoc(function), job.__doc__)))
-        return function
+        signature = inspect.Signature(sorted(own + more, key=lambda p: p.kind), return_annotation=returns)
+
+        def call(*args, **kwargs):
+            bound = signature.bind(*args, **by_alias(JOBS[name]["params"], kwargs))
+            for given, value in bound.arguments.items():
+                default = signature.parameters[given].default
+                if value is None and default is not inspect.Parameter.empty:  # None is not given
+                    bound.arguments[given] = default
+            return function(*bound.args, **bound.kwargs)
+
+        call.__name__, call.__qualname__, call.__module__ = function.__name__, function.__qualname__, "frond"
+        call.__signature__ = signature
+        call.__doc__ = "\n\n".join(filter(None, (inspect.getdoc(function), job.__doc__)))
+        return call
     return decorate
 
 
@@ -91,16 +107,22 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):
     """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
     `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
-    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi)."""
+    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi). With
+    with_, "f" and "f_se" have the materials along a first axis."""
     import numpy
-    nm, theta = _numbers(wavelengths), _numbers(angles)
-    counts = tuple(patches)
+    nm, theta = bands_of(wavelengths), reals(angles, "angles", "degrees")
+    if isinstance(patches, str):
+        patches = [int(v) if v.isdigit() else v for v in patches.replace(",", "x").split("x")]
+    counts = tuple(whole(v, "patches") for v in texts(patches, "patches"))
     found = run("goniophotometer", material=material_text(material), wavelengths=nm, angles=theta,
                 patches="x".join(map(str, counts)), **options).columns["measurements"]
-    arrays = {name: numpy.reshape(found[name], (len(theta), len(nm), *counts)) for name in
+    # One or more materials: the further ones of with_ are along a first axis.
+    materials = [] if options.get("with_") is None else [-1]
+    arrays = {name: numpy.reshape(found[name], (*materials, len(theta), len(nm), *counts)) for name in
               ("f_per_sr", "f_se", "theta_deg", "phi_deg", "projected_solid_angle_sr")}
-    result = {"theta_o_deg": arrays["theta_deg"][0, 0], "phi_o_deg": arrays["phi_deg"][0, 0],
-              "projected_solid_angle_sr": arrays["projected_solid_angle_sr"][0, 0], "f": arrays["f_per_sr"], "f_se": arrays["f_se"]}
+    first = {name: array.reshape(-1, *counts)[0] for name, array in arrays.items()}
+    result = {"theta_o_deg": first["theta_deg"], "phi_o_deg": first["phi_deg"],
+              "projected_solid_angle_sr": first["projected_solid_angle_sr"], "f": arrays["f_per_sr"], "f_se": arrays["f_se"]}
     return {"theta_i_deg": numpy.array(theta), "wavelength_nm": numpy.array(nm), **result}
 
 
@@ -108,7 +130,8 @@ def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **opti
 def conform(material, *, session=None, **options):
     """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary:
     "laws" {law: verdict}, "findings" a table, "all_hold" True if no law is broken."""
-    if not isinstance(material, (str, list, tuple)):
+    from ._bsdf import Bsdf
+    if isinstance(material, Bsdf):
         name = f"{type(material).__name__}-{id(material):x}"
         if name not in names(session=session):
             register_material(name, material, session=session)
@@ -124,7 +147,7 @@ def register_material(name, bsdf, *, session=None):
     core, because each call needs Python's lock. Raises TypeError or ValueError."""
     from ._bsdf import Bsdf
     if not isinstance(bsdf, Bsdf):
-        raise TypeError(f"bsdf: an object of a subclass of frond.Bsdf is needed, not {bsdf!r}")
+        raise TypeError(f"bsdf: an object of a subclass of frond.Bsdf is needed, not {named(bsdf)}")
     if not re.fullmatch(r"[\w.-]+", checked_text(name, "name")):
         raise ValueError(f"name: letters, digits, _ - and . are needed, not {name!r}")
     _frond.register_material(_session_of(session), name, (type(bsdf).__doc__ or name).strip().split("\n")[0], bsdf)
@@ -172,39 +195,46 @@ class Fit:
 
 
 def _csv(wavelengths, R, T):
-    """Returns the columns as CSV text for the job `fit`."""
-    count = len(wavelengths)
-    columns = {"wavelength_nm": wavelengths, "R": R, "T": T}
-    columns = {name: list(values) for name, values in columns.items() if values is not None}
-    for name, values in columns.items():
-        if len(values) != count:
-            raise ValueError(f"fit: {count} wavelengths have {len(values)} {name}")
-        if any(hasattr(v, "__len__") for v in values):
-            raise ValueError(f"fit: {name} has more than one number for a wavelength")
-    rows = zip(*columns.values())
-    lines = [",".join(columns)] + [",".join("" if v is None or v != v else repr(float(v)) for v in row) for row in rows]
-    return "\n".join(lines) + "\n"
+    """Returns the columns as CSV text for the job `fit`. Missing values of R and T are empty."""
+    columns = {"wavelength_nm": bands_of(wavelengths)}
+    for name, values in (("R", R), ("T", T)):
+        if values is not None:
+            columns[name] = reals(values, name, missing=True)
+            if len(columns[name]) != len(columns["wavelength_nm"]):
+                raise ValueError(f"fit: {len(columns['wavelength_nm'])} wavelengths have {len(columns[name])} {name}")
+    return table_text(columns, "fit")
 
 
 @_with_keywords_of("fit")
-def fit(wavelengths=None, R=None, T=None, *, path=None, all_leaves=False, sieve=None, **options):
+def fit(wavelengths=None, R=None, T=None, *, path=None, file=None, data=None, all_leaves=False, sieve=None, **options):
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
     of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
     per leaf area, and in "status" why it could not be fitted.
 
-    wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
-    these arrays; with all_leaves a list of files, too. sieve: True or False, absorption with sieve and detour effects; by default
+    wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing, and so may single values (NaN
+    or masked). path or file: a file, in place of these arrays; with all_leaves a list of files, too. data: the text of such a
+    file, or a table with its columns: a data frame, a dictionary of columns, a structured array or a Dataset. sieve: True or False, absorption with sieve and detour effects; by default
     whichever fits better. fix: {"chlorophylla": 3.9}, or per leaf area {"chlorophyll": "40ug/cm2", "water": "0.012g/cm2"}.
     Raises ValueError or InputError."""
-    if (path is None) == (wavelengths is None):
-        raise ValueError("fit takes measurements, or the path of a file with them")
-    if path is None:
+    given = {name: value for name, value in (("wavelengths", wavelengths), ("path", path), ("file", file), ("data", data)) if value is not None}
+    if len(given) != 1:
+        named_ones = f"; {' and '.join(given)} are given" if given else f"; {'R and T need' if R is not None or T is not None else 'it needs'} wavelengths"
+        raise ValueError(f"fit takes measurements, or the path of a file with them{named_ones}")
+    if wavelengths is not None:
+        if hasattr(wavelengths, "columns") or hasattr(wavelengths, "items") and not is_array(wavelengths):
+            raise TypeError(f"wavelengths: an array is needed, not {named(wavelengths)}: a table is given as data=")
         source = {"data": _csv(wavelengths, R, T)}
+    elif R is not None or T is not None:
+        raise ValueError(f"fit: R and T belong to wavelengths; {next(iter(given))} has its own")
+    elif data is not None:
+        source = {"data": data}
     else:
+        path = file if path is None else path
         files = path if isinstance(path, (list, tuple)) else [path]
         if len(files) != 1 and not all_leaves:
-            raise ValueError(f"fit: path has {len(files)} files; all_leaves=True fits the leaves of several")
-        source = {"file": [path_text(file) for file in files]}
+            raise ValueError(f"fit: {next(iter(given))} has {len(files)} files; all_leaves=True fits the leaves of several")
+        source = {"file": [path_text(name, next(iter(given))) for name in files]}
+    sieve = scalar(sieve)
     if isinstance(sieve, bool):
         sieve = "on" if sieve else "off"
     result = run("fit", **source, all_leaves=all_leaves, sieve=sieve, **options)
@@ -214,6 +244,6 @@ def fit(wavelengths=None, R=None, T=None, *, path=None, all_leaves=False, sieve=
 def read_spectra(path, *, leaf="", angle=8.0):
     """Reads a file of measured spectra as the job `fit` does. Returns a table of wavelength_nm, theta_deg, R and T. leaf: the
     leaf to read if the file has several. angle: of incidence, in degrees, if the file does not say it. Raises InputError."""
-    rows = _frond.read_spectra(path_text(path), leaf, angle)
+    rows = _frond.read_spectra(path_text(path), checked_text(leaf, "leaf"), float(number(angle, "angle", "degrees")))
     columns = list(zip(*rows)) or [(), (), (), ()]
     return _table(dict(zip(("wavelength_nm", "theta_deg", "R", "T"), map(list, columns))))

@@ -1,19 +1,19 @@
 """Sessions, scenes, and the images rendered from them."""
 
 import json
-import operator
 import os
 import threading
 from pathlib import Path
 
 from . import _frond
+from ._values import array_of, file_text, flag, named, number, scalar, texts, whole
 
 
 def _show(progress):
     """Returns the progress callback: None, the given function, or for True one that writes a line to standard error."""
     if progress is not True:
         if progress and not callable(progress):
-            raise TypeError(f"progress: a function of the share that is done, True or None is needed, not {progress!r}")
+            raise TypeError(f"progress: a function of the share that is done, True or None is needed, not {named(progress)}")
         return progress or None
     import sys
 
@@ -28,7 +28,7 @@ def checked_text(text, what):
     """Returns the text. Raises TypeError if it is not a str, and ValueError for a zero byte, at which it would be cut off, and for
     what UTF-8 cannot hold."""
     if not isinstance(text, str):
-        raise TypeError(f"{what}: text is needed, not {text!r}")
+        raise TypeError(f"{what}: text is needed, not {named(text)}")
     if "\0" in text:
         raise ValueError(f"{what}: a text without zero bytes is needed, not {text!r}")
     try:
@@ -38,22 +38,29 @@ def checked_text(text, what):
     return text
 
 
-def path_text(path):
-    """Returns a path (str, bytes or os.PathLike) as text. Raises the errors of `checked_text`."""
-    return checked_text(os.fsdecode(path), "path")
+def path_text(path, what="path"):
+    """Returns a path (str, bytes or os.PathLike) as text. Raises the errors of `file_text` and `checked_text`."""
+    return checked_text(file_text(path, what), what)
 
 
 def _samples_of(samples, default):
     """Returns a number of samples per pixel: the default for None. Raises TypeError or ValueError; the renderer has a lower limit."""
     if samples is None:
         return default
-    try:
-        number = operator.index(samples)
-    except TypeError:
-        raise TypeError(f"samples: a whole number is needed, not {samples!r}") from None
-    if not 0 < number < 1 << 64:
-        raise ValueError(f"samples: a whole number from 1 on, of 64 bits, is needed, not {number}")
-    return number
+    count = whole(samples, "samples", least=1)
+    if count >= 1 << 64:
+        raise ValueError(f"samples: a whole number from 1 on, of 64 bits, is needed, not {count}")
+    return count
+
+
+def _limit_of(value, what, unit=""):
+    """Returns a limit, 0 for None. Raises TypeError, or ValueError for a negative one or nan."""
+    if value is None:
+        return 0.0
+    limit = float(number(value, what, unit))
+    if not limit >= 0:
+        raise ValueError(f"{what}: a number from 0 on is needed, not {value!r}")
+    return limit
 
 
 class Session:
@@ -64,13 +71,14 @@ class Session:
     """
 
     def __init__(self, threads=0, cache=True, plugins=()):
-        folder = _frond.default_cache() if cache is True else "" if not cache else path_text(cache)
-        threads = operator.index(threads)
-        if not 0 <= threads <= 1024:
-            raise ValueError(f"threads: a whole number from 0 to 1024 is needed, not {threads!r}")
+        cache = scalar(cache)
+        folder = _frond.default_cache() if cache is True else "" if cache is False or cache is None else path_text(cache, "cache")
+        threads = whole(threads, "threads")
+        if threads > 1024:
+            raise ValueError(f"threads: a whole number from 0 to 1024 is needed, not {threads}")
         if isinstance(plugins, (str, bytes, os.PathLike)):
             plugins = [plugins]
-        self._session = _frond.Session(threads, folder, [path_text(p) for p in plugins])
+        self._session = _frond.Session(threads, folder, [path_text(p, "plugins") for p in texts(plugins, "plugins")])
 
     @property
     def threads(self):
@@ -79,7 +87,7 @@ class Session:
 
     def names(self, kind="material"):
         """Returns {name: description} of the plug-ins of a kind ("material", "light", "integrator", ...)."""
-        return dict(self._session.names(kind))
+        return dict(self._session.names(checked_text(kind, "kind")))
 
     def load(self, path, **over):
         """Returns the Scene of a file. Keywords: those of the function `load`."""
@@ -87,22 +95,27 @@ class Session:
 
     def loads(self, text, folder=".", **over):
         """Returns the Scene of a string. Relative file names in it start at `folder`."""
-        return self._scene(os.path.join(path_text(folder), "<string>"), checked_text(text, "text"), **over)
+        return self._scene(os.path.join(path_text(folder, "folder"), "<string>"), checked_text(text, "text"), **over)
 
     def _scene(self, path, text, *, adaptive=False, **over):
         from ._jobs import JOBS, arguments, by_alias, python_name
-        over["spp"] = over.pop("samples", over.get("spp")) or None
+        if over.get("samples") is not None and over.get("spp") is not None:
+            raise TypeError("samples and spp are two names of the same number")
+        samples = over.pop("samples", None)
+        over["spp"] = _samples_of(over.get("spp") if samples is None else samples, None)
         params = [p for p in JOBS["render"]["params"] if p["name"] not in _NOT_OF_LOADING]
         over = by_alias(params, over)
+        later = {python_name(name) for name in _NOT_OF_LOADING}
         for name in over:
             if name not in {python_name(p["name"]) for p in params}:
-                raise TypeError(f"load() got an unexpected keyword argument {name!r}")
-        scene = self._session.load(path, text, arguments(params, over), adaptive)
-        return Scene(scene, over["spp"])
+                raise TypeError(f"load() got an unexpected keyword argument {name!r}" +
+                                (": it is one of frond.render, or of Scene.render and Image.save" if name in later else ""))
+        scene = self._session.load(path, text, arguments(params, over), flag(adaptive, "adaptive"))
+        return Scene(scene, over["spp"], self)
 
 
 #: Parameters of the job `render` that belong to `Scene.render` and `Image.save`, not to loading.
-_NOT_OF_LOADING = {"scene", "output", "part", "samples", "checkpoint", "resume", "time-limit", "pilot", "preview",
+_NOT_OF_LOADING = {"scene", "output", "part", "samples", "max-rms", "checkpoint", "resume", "time-limit", "pilot", "preview",
                    "display", "view", "exposure", "white-balance", "display-server", "json"}
 _default = None
 _default_lock = threading.Lock()
@@ -119,9 +132,10 @@ def default_session():
 
 def checked_session(session):
     """Returns the session, or the default one for None. Raises TypeError for anything else."""
-    session = session or default_session()
+    if session is None:
+        return default_session()
     if not isinstance(session, Session):
-        raise TypeError(f"session: a frond.Session is needed, not {session!r}")
+        raise TypeError(f"session: a frond.Session is needed, not {named(session)}")
     return session
 
 
@@ -165,19 +179,23 @@ def write_image(path, rgb, *, color_space=None, like=None):
     sRGB. like: image file whose attributes are copied (scene, seed, command). A failed write leaves no file. Raises InputError,
     and ValueError for an array of another shape.
     """
-    import numpy
-    rgb = numpy.ascontiguousarray(rgb, numpy.float32)
+    given = getattr(rgb, "dtype", None)
+    if str(given) in ("uint8", "uint16"):
+        raise TypeError(f"rgb: linear colours are needed, in which 1 is white, not {named(rgb)}")
+    rgb = array_of(rgb, "rgb", "float32")
     if rgb.ndim != 3 or rgb.shape[2] != 3 or rgb.size == 0:
         raise ValueError(f"rgb: an array [row][column][3] is needed, not of shape {rgb.shape}")
-    _frond.write_image(path_text(path), rgb, checked_text(color_space or "", "color_space"), path_text(like or ""))
+    color_space = "" if color_space is None else checked_text(color_space, "color_space")
+    _frond.write_image(path_text(path), rgb, color_space, "" if like is None else path_text(like, "like"))
 
 
 class Scene:
-    """A loaded scene, made by `load`. It can be rendered any number of times."""
+    """A loaded scene, made by `load`. It can be rendered any number of times, and commands take it in place of a file."""
 
-    def __init__(self, scene, samples=0):
-        self._scene, self._asked = scene, samples
+    def __init__(self, scene, samples, session):
+        self._scene, self._asked, self.session = scene, samples, session
 
+    path = property(lambda self: self._scene.path, doc="Path of the scene file; of a string what errors name.")
     width = property(lambda self: self._scene.width, doc="Width of the film in pixels.")
     height = property(lambda self: self._scene.height, doc="Height of the film in pixels.")
     samples = property(lambda self: self._asked or self._scene.samples, doc="Requested samples per pixel.")
@@ -213,15 +231,13 @@ class Image:
         Keywords: those of `Scene.render`. Raises ValueError if max_rms is given for a scene that is not adaptive."""
         if max_rms is not None and not self._scene._scene.is_adaptive:
             raise ValueError("max_rms is for scenes that are loaded with adaptive=True")
-        for name, value in (("max_rms", max_rms), ("time_limit", time_limit)):
-            if value is not None and not value >= 0:
-                raise ValueError(f"{name}: a number from 0 on is needed, not {value!r}")
-        total, (least, _) = _samples_of(samples, 2**30 if max_rms else self._scene.samples), self.samples
+        noise, seconds = _limit_of(max_rms, "max_rms"), _limit_of(time_limit, "time_limit", "s")
+        total, (least, _) = _samples_of(samples, 2**30 if noise else self._scene.samples), self.samples
         if max_rms is None and total <= least:
             import warnings
             warnings.warn(f"render_more: the image has {least} samples already, {total} in total were asked for", stacklevel=2)
         self._image = None
-        self._rendered.render_more(total, max_rms or 0, time_limit or 0, _show(progress))
+        self._rendered.render_more(total, noise, seconds, _show(progress))
 
     def _load(self):
         if self._image is None:

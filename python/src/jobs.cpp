@@ -1,5 +1,5 @@
-#include "common.h"
 #include "render/parts/inputs.h"
+#include "scene_handle.h"
 
 namespace frond::python {
 namespace {
@@ -15,7 +15,7 @@ nb::dict record_of(const JobParam& p) {
   d["type"] = std::string(p.type), d["default"] = std::string(p.default_value), d["unit"] = std::string(p.unit);
   d["choices"] = std::vector<std::string>(p.choices.begin(), p.choices.end());
   d["aliases"] = std::string(p.aliases), d["implied"] = std::string(p.implied);
-  d["positional"] = p.positional, d["required"] = p.required, d["decides"] = p.decides;
+  d["scene"] = p.scene, d["positional"] = p.positional, d["required"] = p.required, d["decides"] = p.decides;
   return d;
 }
 
@@ -77,17 +77,26 @@ void bind_jobs(nb::module_& m) {
     for (const JobParam& p : session_params(SessionUse::all)) all.append(record_of(p));
     return all;
   });
+  m.def(
+      "parse_numbers", [](const std::string& text) { return parse_numbers(text); }, "text"_a);
+  m.def(
+      "check_arguments",
+      [](const std::string& name, const GivenArguments& given) { arguments_of(find_job(name), given).check(); },
+      "job"_a, "arguments"_a);
   m.def("default_cache", [] { return default_cache().string(); });
   m.def(
       "run",
       [](const std::shared_ptr<SessionHandle>& owner, const std::string& name, const GivenArguments& given,
-         const nb::object& progress) {
+         const nb::object& progress, const std::map<size_t, std::shared_ptr<SceneHandle>>& scenes) {
         const JobInfo& job = find_job(name);
-        const Arguments args = arguments_of(job, given);
+        Arguments args = arguments_of(job, given);
+        std::map<size_t, SceneInMemory> in_memory;
+        for (const auto& [index, handle] : scenes) in_memory.emplace(index, handle->in_memory());
+        const auto of_job = given_scenes(in_memory, args);
         Result result;
         const auto work = [&](const RenderControl& control) {
           try {
-            result = run_job(job, {owner->context, args, control});
+            result = run_job(job, {owner->context, args, control, of_job});
           } catch (const nb::python_error&) {  // of a BSDF written in Python
             throw;
           } catch (...) {
@@ -97,7 +106,8 @@ void bind_jobs(nb::module_& m) {
         run(work, progress);
         return result_of(std::move(result));
       },
-      "session"_a, "job"_a, "arguments"_a, "progress"_a.none());
+      "session"_a, "job"_a, "arguments"_a, "progress"_a.none(),
+      "scenes"_a = std::map<size_t, std::shared_ptr<SceneHandle>>());
 }
 
 }  // namespace frond::python

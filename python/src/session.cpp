@@ -1,28 +1,17 @@
-#include "common.h"
 #include "image/display_image.h"
 #include "image/image_file.h"
 #include "image/rgb_file.h"
-#include "jobs/support/render_task.h"
 #include "render/image_output.h"
+#include "render/parts/inputs.h"
 #include "render/parts/part_file.h"
 #include "render/plugins.h"
+#include "scene_handle.h"
 #include "study/choose/choice_report.h"
 
 namespace frond::python {
 namespace {
 
 using namespace nb::literals;
-
-/// A scene, loaded as the arguments of the job `render` ask for it.
-struct SceneHandle {
-  SceneHandle(std::shared_ptr<SessionHandle> session, Arguments given, bool adaptive)
-      : owner(std::move(session)), args(std::move(given)), run{owner->context, args}, task(run, adaptive) {}
-
-  std::shared_ptr<SessionHandle> owner;
-  Arguments args;
-  JobRun run;
-  RenderTask task;
-};
 
 /// What has been rendered of a scene so far. One thread at a time.
 struct ImageHandle {
@@ -44,9 +33,11 @@ std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, c
         if (text)
           scene->task.read_text(*text, path);
         else
-          scene->task.read({path});
+          scene->task.read({{path}});
         scene->task.choose(nullptr, {});
         scene->task.load(nullptr);
+        const SceneDescription& loaded = scene->task.scene().description();
+        scene->files = states_of(input_files(loaded, wavelengths_plugin(loaded, owner->session().registry())));
         owner->context.log().check();
       },
       nb::none());
@@ -174,6 +165,7 @@ void bind_session(nb::module_& m) {
           "path"_a);
 
   nb::class_<SceneHandle>(m, "Scene")
+      .def_prop_ro("path", [](const SceneHandle& s) { return s.args.words("scene").front(); })
       .def_prop_ro("width", [](const SceneHandle& s) { return s.task.scene().film_format().settings.width; })
       .def_prop_ro("height", [](const SceneHandle& s) { return s.task.scene().film_format().settings.height; })
       .def_prop_ro("samples", [](const SceneHandle& s) { return s.task.samples().end; })

@@ -11,7 +11,7 @@ namespace {
 
 constexpr JobParam kParams[] = {
     JobParam("scene", ArgumentKind::texts, "Scene files (pbrt-v4 format).",
-             {.type = "SCENE", .path = PathUse::read, .positional = true, .required = true}),
+             {.type = "SCENE", .path = PathUse::read, .scene = true, .positional = true, .required = true}),
     kIgnoreUnsupportedParam,
     kStrictParam,
 };
@@ -22,13 +22,13 @@ struct Findings {
   size_t warnings = 0;
 };
 
-Findings findings_of(const JobRun& run, const std::vector<std::filesystem::path>& files) {
+Findings findings_of(const JobRun& run, const SceneInput& input) {
   StrictLog& log = run.context.log();
   log.begin(run.args.flag("strict"));
   Session& session = run.session();
   Findings findings;
   Problems& problems = findings.problems;
-  const SceneDescription description = session.read(files, unsupported_of(run.args), problems);
+  const SceneDescription description = read_scene(run, input, problems);
   if (!description.files.empty()) problems.attempt([&] { session.check(description); });
   problems.attempt([&] { check_image_name(session.film(description).filename, description.film.where); });
   problems.attempt([&] { log.check(); });
@@ -46,9 +46,9 @@ std::string counted(size_t count, const char* what) {
 /// The job: checks every scene, and reports all errors. The exit code is 1 if there is an error.
 Result check(const JobRun& run) {
   Result result{.tables = {{"problems"}}};
-  for (const auto& files : scenes_of(run.args.texts("scene"))) {
-    const auto [problems, warnings] = findings_of(run, files);
-    const std::string name = files.back().string();
+  for (const SceneInput& input : scenes_of(run)) {
+    const auto [problems, warnings] = findings_of(run, input);
+    const std::string name = input.files.back().string();
     for (const std::string& message : problems.messages()) {
       result.tables[0].add("scene", name);
       result.tables[0].add("problem", message);

@@ -169,11 +169,10 @@ Result compare_models(const JobRun& run) {
   }
   compare::StudyOptions options{.scene = args.text("scene"), .wavelengths = wavelengths_text(args)};
   options.leaves = args.texts("leaf");
-  options.unsupported = unsupported_of(args);
   options.size = int(args.given("size") ? args.count("size") : setting.size);
   if (args.given("seed")) options.seed = args.seed("seed");
   Session& session = run.session();
-  const compare::Study study(session, options);
+  const compare::Study study(session, read_scene(run, scenes_of(run).front()), options);
   if (args.flag("strict")) (void)study.scene(plan.reference);  // strict mode reports warnings before the renders
   run.context.log().check();
   StoppingProgress progress(run);

@@ -47,7 +47,7 @@ const JobParam kParams[] = {
     JobParam(
         "material", texts,
         "NAME[,parameter=value...]: material, as in abm,specimen=maize; for mitsuba a scene file (pbrt-v4 format).",
-        {.type = "MATERIAL|SCENE", .decides = true, .positional = true, .required = true}),
+        {.type = "MATERIAL|SCENE", .scene = true, .decides = true, .positional = true, .required = true}),
     JobParam("format", text, kFormatDoc, {.choices = kFormatNames, .decides = true, .required = true}),
     JobParam("output", text, "File to write; - is standard output, for text formats only. For mitsuba a folder.",
              {.type = "FILE|FOLDER", .aliases = "o", .path = PathUse::write, .required = true}),
@@ -111,7 +111,7 @@ Result export_scene(const JobRun& run) {
     run.log().warn({}, fmt::format("{} {}: the first is red and the last is blue", args.spelled("wavelengths"),
                                    fmt::join(nm, ",")));
   Session& session = run.session();
-  SceneDescription description = session.read(files.front(), unsupported_of(args));
+  SceneDescription description = read_scene(run, scenes_of(run, "material").front());
   apply_swaps(description, swaps_of(args), session.registry(), run.log());
   export_to_mitsuba(std::move(description), session.registry(),
                     {args.text("output"), args.numbers("wavelengths"), files.front()}, session.pool(), run.log(),
@@ -125,6 +125,9 @@ Result export_material(const JobRun& run) {
   const bool is_scene = args.text("format") == kMitsuba;
   check_options(args, is_scene);
   if (is_scene) return export_scene(run);
+  if (!run.scenes.empty())
+    fail({}, "{} {} takes a material, not a scene: {} mitsuba takes one", args.spelled("format"), args.text("format"),
+         args.spelled("format"));
   const ExportFormat& format =
       **std::ranges::find(export_formats(), args.text("format"), [](const ExportFormat* f) { return f->name; });
   check_arguments(args, format);

@@ -42,7 +42,6 @@ constexpr JobParam kParams[] = {
              "or scene: that of the scene's light sky.",
              {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
     kSwapParam,
-    kIntegratorParam,
     kSeedParam,
     kIgnoreUnsupportedParam,
     kStrictParam,
@@ -258,8 +257,7 @@ Result flux(const JobRun& run) {
   const FluxRequest request{.target = target_of(run.args),
                             .period = period_of(run.args),
                             .wavelengths = wavelengths_text(run.args),
-                            .by_instance = is_by_instance,
-                            .keeps_depth = run.args.given("integrator")};
+                            .by_instance = is_by_instance};
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   const auto load = [&] {
     SceneDescription description = described_scene(run);

@@ -28,10 +28,11 @@ using enum ArgumentKind;
 using Clock = std::chrono::steady_clock;
 
 constexpr JobParam kParams[] = {
-    JobParam("scene", texts,
-             "Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the "
-             "next file begins another.",
-             {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true}),
+    JobParam(
+        "scene", texts,
+        "Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the "
+        "next file begins another.",
+        {.type = "SCENE", .path = PathUse::read, .scene = true, .decides = true, .positional = true, .required = true}),
     JobParam(
         "output", text,
         "Image: .exr (linear), .png or .jpg (through the display transform). By default the file named by the scene's "
@@ -122,8 +123,7 @@ double per_path(double value, const RenderStatistics& s) { return s.paths > 0 ? 
 /// One render, from its scene to its files.
 class SceneRender {
  public:
-  SceneRender(const JobRun& run, std::vector<std::filesystem::path> files)
-      : run_(run), files_(std::move(files)), task_(run), views_(run.args) {}
+  SceneRender(const JobRun& run, const SceneInput& input) : run_(run), input_(input), task_(run), views_(run.args) {}
 
   /// Appends the render's statistics to the table of the result, and to `json`.
   void render(Result& result, std::vector<nlohmann::ordered_json>& json) {
@@ -160,7 +160,7 @@ class SceneRender {
 
   /// Detects errors before the render: reads and builds the scene, checks outputs.
   void prepare() {
-    task_.read(files_);
+    task_.read(input_);
     find_paths();
     // A pilot that takes longer than this part of the time limit ends with the exact models: an image with noise is
     // worth more than a better choice of models without time to use them.
@@ -352,7 +352,7 @@ class SceneRender {
   const JobRun& run_;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point load_start_ = start_;
-  std::vector<std::filesystem::path> files_;
+  const SceneInput& input_;
   RenderTask task_;
   RenderViews views_;
   std::optional<PlannedOutput> film_output_;
@@ -365,25 +365,27 @@ class SceneRender {
 
 /// Reads several scenes before the first is rendered. Throws InputError if one cannot be read, or if two write the same
 /// file.
-void check_scenes(const JobRun& run, const std::vector<std::vector<std::filesystem::path>>& scenes) {
+void check_scenes(const JobRun& run, const std::vector<SceneInput>& scenes) {
   JobContext silent(silent_log(), run.context.options());
-  const JobRun quiet{silent, run.args, run.control};
+  const JobRun quiet{silent, run.args, run.control, run.scenes};
   std::vector<std::pair<std::string, std::string>> outputs;  // the Film's file, and its scene
-  for (const auto& files : scenes) {
-    if (files.back() == "-") continue;  // standard input can be read once only
+  for (const SceneInput& input : scenes) {
+    if (input.files.back() == "-") continue;  // standard input can be read once only
     RenderTask task(quiet);
-    task.read(files);
+    task.read(input);
     for (const auto& [output, scene] : outputs)
       if (is_same_file(output, task.film_file()))
         fail({}, "{} and {} are both written to {}: give their Films a \"filename\" each, or render one with {}", scene,
-             files.back().string(), output, run.args.spelled("output"));
-    outputs.emplace_back(task.film_file(), files.back().string());
+             input.files.back().string(), output, run.args.spelled("output"));
+    outputs.emplace_back(task.film_file(), input.files.back().string());
   }
 }
 
 /// The job: renders the scenes one after another.
 Result render(const JobRun& run) {
-  const auto scenes = scenes_of(run.args.texts("scene"));
+  const std::vector<SceneInput> scenes = scenes_of(run);
+  if (scenes.size() > 1 && !run.scenes.empty())
+    fail({}, "a scene in memory is rendered alone: call the function once for each of the {} scenes", scenes.size());
   for (const char* name : {"output", "part"})
     if (scenes.size() > 1 && run.args.given(name))
       fail({}, "{} scenes cannot all be written to {}: without it each is written to the file of its Film",
@@ -391,8 +393,8 @@ Result render(const JobRun& run) {
   if (scenes.size() > 1 && !run.args.flag("pilot")) check_scenes(run, scenes);
   Result result{.tables = {{"renders"}}};
   std::vector<nlohmann::ordered_json> json;  // of each scene
-  for (const auto& files : scenes) {
-    SceneRender(run, files).render(result, json);
+  for (const SceneInput& input : scenes) {
+    SceneRender(run, input).render(result, json);
     if (result.stopped) return result;
   }
   const nlohmann::ordered_json whole = json.size() == 1 ? json[0] : nlohmann::ordered_json(json);

@@ -319,7 +319,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   if (description.has_media())
     fail(description.media.front().plugin.where,
          "flux does not trace participating media; brf and render do, by integrator \"volpath\"");
-  prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description);
+  prepare_for_radiometry(session.registry(), request.wavelengths, request.period, false, description);
   const char* what = request.by_instance ? "flux by instance" : "flux";
   LoadedScene loaded =
       session.load(std::move(description), {.command = measurement_text(what, request.target, request.period)});

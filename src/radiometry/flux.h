@@ -18,7 +18,6 @@ struct FluxRequest {
   std::optional<std::array<double, 2>> period = {};  ///< replaces the scene's period
   std::string wavelengths = {};                      ///< a PluginText of `bands`
   bool by_instance = false;                          ///< also measure the absorption of each instance
-  bool keeps_depth = false;                          ///< as in BrfRequest
 };
 
 /// Light budget by band: shares of the light that enters through the target.

@@ -43,6 +43,7 @@ struct ParamTraits {
   bool whole = false;             ///< numbers: each must be a whole number
   bool relative = false;          ///< real: a number with % is relative, as in 2%
   PathUse path = PathUse::none;
+  bool scene = false;    ///< Python takes a scene in memory too
   bool decides = false;  ///< the result depends on it: part of the identity of a measurement or a part
   bool positional = false;
   bool required = false;

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include "report/chart.h"
-#include "scene/format/parser.h"
 
 namespace frond {
 namespace {
@@ -69,26 +68,27 @@ SceneOverrides overrides_of(const Arguments& args) {
   return overrides;
 }
 
+void apply_scene_flags(const Arguments& args, SceneDescription& description) {
+  constexpr std::pair<const char*, const char*> kSceneOptions[] = {
+      {"disable-pixel-jitter", "disablepixeljitter"},
+      {"disable-texture-filtering", "disabletexturefiltering"},
+      {"disable-wavelength-jitter", "disablewavelengthjitter"}};
+  for (const auto& [flag, option] : kSceneOptions) {
+    if (!args.flag(flag)) continue;
+    std::erase_if(description.options, [name = option](const ParsedParam& p) { return p.name == name; });
+    description.options.push_back({"bool", option, {}, {}, std::vector<bool>{true}});
+  }
+}
+
 Unsupported unsupported_of(const Arguments& args) {
   return args.given("ignore-unsupported") ? Unsupported(args.text("ignore-unsupported")) : Unsupported();
 }
 
 SceneDescription described_scene(const JobRun& run) {
-  SceneDescription description = run.session().read(run.args.text("scene"), unsupported_of(run.args));
+  SceneDescription description = read_scene(run, scenes_of(run).front());
+  description.is_quick = false;  // of an image, which a measurement has none of
   apply_overrides(overrides_of(run.args), description, run.session().registry(), run.log());
   return description;
-}
-
-/// A single file is always a scene, so that an incomplete one is reported as such.
-std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {
-  std::vector<std::vector<std::filesystem::path>> scenes;
-  bool is_open = false;  // the last scene lacks WorldBegin
-  for (const std::string& file : files) {
-    if (!is_open) scenes.emplace_back();
-    scenes.back().emplace_back(file);
-    is_open = files.size() > 1 && !holds_world(file);
-  }
-  return scenes;
 }
 
 /// Text that begins with a digit is a list of bands; other text names a strategy.

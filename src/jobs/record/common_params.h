@@ -9,7 +9,7 @@ namespace frond {
 
 inline constexpr JobParam kSceneParam(
     "scene", ArgumentKind::text, "Scene file (pbrt-v4 format).",
-    {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true});
+    {.type = "SCENE", .path = PathUse::read, .scene = true, .decides = true, .positional = true, .required = true});
 /// Returns a positional parameter for images or parts to read: `count` files, or any number if 0.
 constexpr JobParam files_param(std::string_view name, std::string_view doc, size_t count = 0) {
   return JobParam(name, ArgumentKind::texts, doc,
@@ -62,12 +62,12 @@ std::vector<MaterialSwap> swaps_of(const Arguments& args);
 /// Returns the overrides by --swap, --wavelengths, --integrator, --filter, --for-denoiser, --seed and --quick; the
 /// job may declare a subset. Throws InputError.
 SceneOverrides overrides_of(const Arguments& args);
+/// Writes the flags that set an Option into the scene; they override Options of the same name.
+void apply_scene_flags(const Arguments& args, SceneDescription& description);
 /// Returns the features that --ignore-unsupported lists. Throws InputError for an unknown one.
 Unsupported unsupported_of(const Arguments& args);
-/// Reads the scene file and applies the overrides. Throws InputError or Problems with all errors of the scene.
+/// Reads the job's scene and applies the overrides. Throws InputError or Problems with all errors of the scene.
 SceneDescription described_scene(const JobRun& run);
-/// Groups files into scenes: a scene may consist of several files, the last of which contains WorldBegin.
-std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
 /// Returns --wavelengths as a plug-in and its parameters: "smpte", "bands,wavelengths=450,550". Numbers alone, 450,550
 /// or 400:700:10, become bands.
 std::string wavelengths_text(const Arguments& args);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "jobs/record/arguments.h"
+#include "jobs/record/scene_in_memory.h"
 #include "jobs/record/strict_log.h"
 #include "render/session.h"
 #include "report/table.h"
@@ -55,7 +56,8 @@ class JobContext {
 struct JobRun {
   JobContext& context;
   const Arguments& args;
-  RenderControl control = {};  ///< progress and stop token of the front end
+  RenderControl control = {};                ///< progress and stop token of the front end
+  std::map<size_t, GivenScene> scenes = {};  ///< in place of files: by the index of a word of the scene parameter
 
   Session& session() const { return context.session(); }
   const Log& log() const { return context.log(); }

@@ -18,21 +18,6 @@
 namespace frond {
 namespace {
 
-/// Flags that set an Option of the scene.
-constexpr std::pair<const char*, const char*> kSceneOptions[] = {
-    {"disable-pixel-jitter", "disablepixeljitter"},
-    {"disable-texture-filtering", "disabletexturefiltering"},
-    {"disable-wavelength-jitter", "disablewavelengthjitter"}};
-
-/// Flags override Options of the same name in the scene file.
-void set_scene_options(const Arguments& args, SceneDescription& description) {
-  for (const auto& [flag, option] : kSceneOptions) {
-    if (!args.flag(flag)) continue;
-    std::erase_if(description.options, [name = option](const ParsedParam& p) { return p.name == name; });
-    description.options.push_back({"bool", option, {}, {}, std::vector<bool>{true}});
-  }
-}
-
 /// Returns the crop of the arguments, or of the scene. Throws InputError if it contains no pixel.
 Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
   const char* name = args.given("pixel") ? "pixel" : args.given("pixels") ? "pixels" : "crop";
@@ -80,11 +65,12 @@ void check_early(const Arguments& args, const std::vector<std::string>& channels
 
 }  // namespace
 
-void RenderTask::read(const std::vector<std::filesystem::path>& files) {
+void RenderTask::read(const SceneInput& input) {
   Problems problems;
   Session& session = run_.session();
-  description_ = session.read(files, unsupported_of(run_.args), problems);
-  set_scene_options(run_.args, description_);
+  description_ = read_scene(run_, input, problems);
+  settings_ = description_;
+  apply_scene_flags(run_.args, description_);
   // If files have errors, the errors of the scene are reported as well.
   if (!problems.empty() && !description_.files.empty()) problems.attempt([&] { session.check(description_); });
   problems.check();
@@ -93,7 +79,8 @@ void RenderTask::read(const std::vector<std::filesystem::path>& files) {
 
 void RenderTask::read_text(const std::string& text, const std::string& name) {
   description_ = run_.session().read_text(text, name, unsupported_of(run_.args));
-  set_scene_options(run_.args, description_);
+  settings_ = description_;
+  apply_scene_flags(run_.args, description_);
   apply_arguments();
 }
 

@@ -19,8 +19,8 @@ class RenderTask {
   explicit RenderTask(const JobRun& run, bool adaptive = false)
       : run_(run), is_adaptive_(adaptive || run.args.given("max-rms")) {}
 
-  /// Reads a scene, which may consist of several files. Throws Problems with all errors.
-  void read(const std::vector<std::filesystem::path>& files);
+  /// Reads a scene. Throws Problems with all errors.
+  void read(const SceneInput& input);
   /// Reads a scene from a string. Errors name it `name`; relative paths in the scene are resolved against `name`.
   void read_text(const std::string& text, const std::string& name);
   /// Returns the film's file name. Throws InputError, at the film's directive, for one outside of the working folder: a
@@ -40,7 +40,8 @@ class RenderTask {
   void load(const ImageOutput* output);
 
   const LoadedScene& scene() const { return *scene_; }
-  SampleRange samples() const { return samples_; }  ///< of each pixel
+  const SceneSettings& settings() const { return settings_; }  ///< as they were read, without overrides
+  SampleRange samples() const { return samples_; }             ///< of each pixel
   bool is_adaptive() const { return is_adaptive_; }
   /// Returns a part without samples.
   RenderPart empty_part() const;
@@ -53,6 +54,7 @@ class RenderTask {
 
   const JobRun& run_;
   bool is_adaptive_;
+  SceneSettings settings_;
   SceneDescription description_;
   std::string film_file_;
   Location film_where_, where_;

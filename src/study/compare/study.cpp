@@ -46,7 +46,10 @@ std::vector<std::string> leaf_names(const SceneSettings& description, const Regi
 }  // namespace
 
 Study::Study(Session& session, const StudyOptions& options)
-    : session_(session), description_(session.read(options.scene, options.unsupported)) {
+    : Study(session, session.read(options.scene, options.unsupported), options) {}
+
+Study::Study(Session& session, SceneDescription description, const StudyOptions& options)
+    : session_(session), description_(std::move(description)) {
   apply_overrides({.wavelengths = options.wavelengths, .seed = options.seed}, description_, registry(), session.log());
   resize(description_.film, session.film(description_), options.size);
   film_ = session.film(description_);

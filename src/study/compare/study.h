@@ -22,6 +22,8 @@ class Study {
  public:
   /// `session` must outlive this object. Throws InputError.
   Study(Session& session, const StudyOptions& options);
+  /// Same, for a scene that has been read; options.scene is then its name.
+  Study(Session& session, SceneDescription description, const StudyOptions& options);
 
   /// Returns the scene with the candidate's material. All scenes share one geometry. Throws InputError.
   std::shared_ptr<const Scene> scene(const Candidate& candidate) const;
