@@ -61,15 +61,24 @@ def scalar(value):
     return value
 
 
+def _converted(values):
+    """Returns converted numbers without the last digit, in which a conversion rounds: 0.36 um are 360 nm."""
+    if is_array(values):
+        import numpy
+        values = numpy.asarray(values)
+        return values if values.dtype.kind != "f" else numpy.reshape([float(f"{v:.15g}") for v in values.flat], values.shape)
+    return float(f"{values:.15g}") if isinstance(values, float) else values
+
+
 def in_unit(value, what, unit):
     """Returns a quantity of pint or astropy, or a labelled array with the attribute "units", as plain numbers in `unit`; others
     as they are. Raises ValueError for a unit that cannot be converted."""
     wanted = {"degrees": "deg", "stops": ""}.get(unit, unit)
     try:
         if hasattr(value, "magnitude") and hasattr(value, "units") and hasattr(value, "to"):
-            return value.to(wanted or "dimensionless").magnitude
+            return _converted(value.to(wanted or "dimensionless").magnitude)
         if hasattr(value, "unit") and hasattr(value, "to_value"):
-            return value.to_value(wanted)
+            return _converted(value.to_value(wanted))
     except Exception as error:
         raise ValueError(f"{what}: {error}; {f'{unit} is' if unit else 'numbers without a unit are'} needed") from None
     if not hasattr(value, "dims") or not hasattr(value, "attrs") or hasattr(value, "data_vars"):
@@ -82,7 +91,7 @@ def in_unit(value, what, unit):
     factor = _UNITS[unit].get(str(own).strip())
     if factor is None:
         raise ValueError(f"{what}: the array's attribute \"units\" is {str(own)!r}: {unit or 'a share of 1'} is needed")
-    return value if factor == 1 else value.data * factor  # without the attribute
+    return value if factor == 1 else _converted(value.data * factor)  # without the attribute
 
 
 def number(value, what, unit=""):
@@ -127,6 +136,8 @@ def _of_array(values, what):
         array = values if isinstance(values, numpy.ndarray) else numpy.asarray(values)
     except Exception as error:
         raise TypeError(f"{what}: {named(values)} is no array in memory: {error}") from None
+    if array.ndim != 1:
+        raise TypeError(f"{what}: one dimension is needed, not {named(values)}")
     if array.dtype.kind not in "iufOUT":
         raise TypeError(f"{what}: numbers are needed, not {named(values)}")
     return array.tolist()

@@ -146,6 +146,7 @@ def test_what_is_no_list_of_numbers_is_named(value, message):
 
 def test_angles_have_their_own_unit():
     angles = xarray.DataArray([0.0, numpy.pi / 6], dims="view", attrs={"units": "rad"})
+    assert frond.bsdf("diffuse", Quantity(numpy.array([0.36, 0.45]), "um"), session=SESSION).wavelengths == [360, 450]
     assert numpy.allclose(sorted(set(frond.spectrophotometer("diffuse", 551, angles, **SMALL)["theta_deg"])), [0, 30])
     with pytest.raises(ValueError, match="angles: .*Cannot convert from 'nm' to 'deg'; degrees is needed"):
         frond.spectrophotometer("diffuse", 551, Quantity(numpy.array([1.0]), "nm"), **SMALL)

@@ -13,7 +13,7 @@ from ._session import (Image as Image, Scene as Scene, Session as Session, defau
 
 __version__: str
 
-def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def render(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequence[str | os.PathLike | Scene], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: float | Sequence[float] | str | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: float | str | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: float | Sequence[float] | str | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Render a pbrt-v4 scene file.
 
     scene: Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the next file begins another.
@@ -51,7 +51,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     strict: Treat warnings as errors.
     json: JSON file to write; - is standard output."""
 
-def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[str, str] = 'abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert', output: str | os.PathLike | None = None, *, reference: str | os.PathLike = 'abm,mode=weighted', rms: float | Sequence[float] | str | None = None, target: str | os.PathLike | None = None, relative: bool = False, leaf: str | Sequence[str] | Mapping[str, str] | None = None, wavelengths: str | os.PathLike | None = None, size: int | None = None, spp: int | None = None, reference_spp: int | None = None, exposure: float | None = None, seed: int | None = None, quick: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def compare(scene: str | os.PathLike | Scene, materials: str | os.PathLike | Sequence[str | os.PathLike] = 'abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert', output: str | os.PathLike | None = None, *, reference: str | os.PathLike = 'abm,mode=weighted', rms: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, relative: bool = False, leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, wavelengths: float | Sequence[float] | str | None = None, size: int | None = None, spp: int | None = None, reference_spp: int | None = None, exposure: float | None = None, seed: int | None = None, quick: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the cost and the error of each leaf model in a scene.
 
     scene: Scene file (pbrt-v4 format).
@@ -76,13 +76,14 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = False, sieve: str | os.PathLike | None = None, file: str | Sequence[str] | Mapping[str, str] | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, directions: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+def fit(wavelengths = None, R = None, T = None, *, path = None, file: str | os.PathLike | Sequence[str | os.PathLike] | None = None, data: str | pandas.DataFrame | Mapping[str, Sequence[float]] | None = None, all_leaves = False, sieve: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, directions: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
     of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
     per leaf area, and in "status" why it could not be fitted.
 
-    wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
-    these arrays; with all_leaves a list of files, too. sieve: True or False, absorption with sieve and detour effects; by default
+    wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing, and so may single values (NaN
+    or masked). path or file: a file, in place of these arrays; with all_leaves a list of files, too. data: the text of such a
+    file, or a table with its columns: a data frame, a dictionary of columns, a structured array or a Dataset. sieve: True or False, absorption with sieve and detour effects; by default
     whichever fits better. fix: {"chlorophylla": 3.9}, or per leaf area {"chlorophyll": "40ug/cm2", "water": "0.012g/cm2"}.
     Raises ValueError or InputError.
 
@@ -105,7 +106,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = Fal
     like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""
 
-def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen: str | os.PathLike | None = None, method: str | os.PathLike = 'solve', *, wavelengths: float | Sequence[float] | str, angles: float | Sequence[float] | str = '0:180:1', rays: int = 1000000, nodes: int | None = None, depths: float | Sequence[float] | str | None = None, seed: int | None = None, equalsides: bool = False, output: str | os.PathLike, progress = None, session: Session | None | None = None) -> Result:
+def table(leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, specimen: str | os.PathLike | None = None, method: str | os.PathLike = 'solve', *, wavelengths: float | Sequence[float] | str, angles: float | Sequence[float] | str = '0:180:1', rays: int = 1000000, nodes: int | None = None, depths: float | Sequence[float] | str | None = None, seed: int | None = None, equalsides: bool = False, output: str | os.PathLike, progress = None, session: Session | None | None = None) -> Result:
     """Compute the table of a leaf material and write it to a file for its "tablefile".
 
     leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as FILE.leaf the complete material for other programs.
@@ -122,7 +123,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
     equalsides: Write the mean of both sides, at angles up to 90 degrees.
     output: File to write; - is standard output. FILE.leaf, of leaf_solved: for other programs (docs/file_formats.md)."""
 
-def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | Sequence[str] | Mapping[str, str] | None = None, reference: str | os.PathLike = 'leaf_solved', within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike = 'leaf_solved', within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
     Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal; abm uses incident=light.
@@ -153,7 +154,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
 
     Returns the job's table."""
 
-def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, irradiance: str | os.PathLike = 'solar-am1.5-global', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, irradiance: str | os.PathLike = 'solar-am1.5-global', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
@@ -175,7 +176,6 @@ def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str |
     by: Measure the absorption of each instance of an object, one row each. One of instance.
     irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, or scene: that of the scene's light sky. Unit: W/(m2 nm). Default: solar-am1.5-global.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
-    integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
@@ -184,7 +184,7 @@ def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str |
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv."""
 
-def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequence[str] | Mapping[str, str] | None = None, rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
+def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
     """Measure a material's reflectance, transmittance and absorptance.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
@@ -199,10 +199,11 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequenc
     json: JSON file to write; - is standard output.
     plot: Chart of R and 1 - T against wavelength or angle: .svg or .png."""
 
-def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | Sequence[str] | Mapping[str, str] | None = None, rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
+def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
     """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
     `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
-    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi).
+    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi). With
+    with_, "f" and "f_se" have the materials along a first axis.
 
     Measure a material's BRDF and BTDF over the whole sphere.
 
@@ -254,7 +255,7 @@ def conform(material, *, session: Session | None | None = None, sweep: bool = Fa
     json: JSON file to write; - is standard output.
     map: Map of the directions of the worst finding: .svg or .png."""
 
-def bench(material: str | Sequence[str] | Mapping[str, str], with_: str | Sequence[str] | Mapping[str, str] | None = None, angles: float | Sequence[float] | str = '0,45,80', *, lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def bench(material: str | os.PathLike | Sequence[str | os.PathLike], with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, angles: float | Sequence[float] | str = '0,45,80', *, lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Time the calls of a material's BSDF, and measure the variance of its samples.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
@@ -270,7 +271,7 @@ def bench(material: str | Sequence[str] | Mapping[str, str], with_: str | Sequen
     json: File for Google Benchmark's JSON with frond's counters; - is standard output.
     plot: Chart of variance against the cost of a hit: .svg or .png."""
 
-def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.PathLike, output: str | os.PathLike, *, wavelengths: float | Sequence[float] | str | None = None, angles: float | Sequence[float] | str | None = None, view_angles: float | Sequence[float] | str | None = None, view_azimuths: float | Sequence[float] | str | None = None, rays: int | None = None, seed: int | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, ignore_unsupported: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def export(material: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequence[str | os.PathLike | Scene], format: str | os.PathLike, output: str | os.PathLike, *, wavelengths: float | Sequence[float] | str | None = None, angles: float | Sequence[float] | str | None = None, view_angles: float | Sequence[float] | str | None = None, view_azimuths: float | Sequence[float] | str | None = None, rays: int | None = None, seed: int | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, ignore_unsupported: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write a material's BSDF, or a scene, as files for other programs.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize; for mitsuba a scene file (pbrt-v4 format).
@@ -285,7 +286,7 @@ def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.P
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement."""
 
-def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
+def check(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequence[str | os.PathLike | Scene], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
     """Read scenes and all files that they name, and report all errors.
 
     Nothing is rendered. The exit status is 1 if there is an error.
@@ -294,7 +295,7 @@ def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: st
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors."""
 
-def import_(model: str | os.PathLike, output: str | os.PathLike, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | Sequence[str] | Mapping[str, str] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def import_(model: str | os.PathLike, output: str | os.PathLike, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Write a plant model of another program, OBJ or glTF, as a scene.
 
     The model is read in a process of its own; files that it names are read in its folder and below only. Names of materials, their colours, opacity and normal maps, and instances are kept.
@@ -332,7 +333,7 @@ def instances(csv: str | os.PathLike, output: str | os.PathLike, *, progress = N
     csv: CSV file to read.
     output: Instance table to write, a NumPy file (.npy)."""
 
-def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike, bands: float | Sequence[float] | str | None = None, *, exposure: float | str = '0', white_balance: str | os.PathLike | None = None, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def convert(images: str | os.PathLike | Sequence[str | os.PathLike], output: str | os.PathLike, bands: float | Sequence[float] | str | None = None, *, exposure: float | str = '0', white_balance: float | str | None = None, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Average linear images, and write the mean as EXR or through a display transform.
 
     images: EXR files of one size and colour space.
@@ -344,7 +345,7 @@ def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.Pa
     view: View of the display.
     color_space: Colour space of images that do not state one, as after other programs, such as linear SMPTE-C or XYZ; by default linear sRGB (Rec. 709), as OpenEXR defines."""
 
-def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, scale: float = 0.1, *, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def difference(images: str | os.PathLike | Sequence[str | os.PathLike], output: str | os.PathLike | None = None, scale: float = 0.1, *, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Measure the RMS error between two renders, with noise and bias separated.
 
     images: A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.
@@ -352,7 +353,7 @@ def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os
     scale: Luminance difference that is drawn in full colour. Range: above 0. Default: 0.1.
     json: JSON file to write; - is standard output."""
 
-def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: float | Sequence[float] | str | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: float | str | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: float | Sequence[float] | str | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write a job that renders ranges of samples and merges them, for Slurm, Open Job Description or Snakemake; --run starts it.
 
     The options of frond render are passed on to the tasks.
@@ -397,7 +398,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     strict: Treat warnings as errors.
     json: JSON file to write; - is standard output."""
 
-def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def merge(parts: str | os.PathLike | Sequence[str | os.PathLike], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: float | str | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Merge parts of a render, written by frond render --part.
 
     parts: Parts of one render, without common samples.
