@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/parallel.h"
 #include "core/params.h"
 
 namespace frond {
@@ -21,7 +22,7 @@ struct PluginInfo {
   std::span<const Param> params;
 };
 
-/// Returns the result of `make()`. InputError passes through; any other exception, and a null pointer as result, become
+/// Returns the result of `make()`. InputError and Stopped pass through; any other exception, and a null pointer as result, become
 /// an InputError at `where` that names the plug-in.
 template <class Make>
 auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
@@ -29,6 +30,8 @@ auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
     try {
       return make();
     } catch (const InputError&) {
+      throw;
+    } catch (const Stopped&) {
       throw;
     } catch (const std::bad_alloc&) {
       fail(where, "{} \"{}\" needs more memory than there is", info.kind, info.name);

@@ -58,7 +58,8 @@ struct WorkPlan {
 /// Plan of these samples for all pixels of Film::sampled.
 WorkPlan plan_of(const Film& film, SampleRange samples);
 
-/// Observer of a render, and conditions that end it early. A render ends between work items.
+/// Observer of a render, and conditions that end it early. A render ends between work items: what of an item has been
+/// traced when a stop is requested does not count. At the deadline, items that have begun may take half a second more.
 struct RenderControl {
   std::stop_token stop = {};
   std::optional<std::chrono::steady_clock::time_point> deadline = {};

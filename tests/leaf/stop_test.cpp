@@ -22,7 +22,10 @@ void expect_stopped(const Act& act) {
   EXPECT_THROW(act(), Stopped);
 }
 
-Tissue soybean() { return TissueModel(find_specimen("soybean")->params).at(551); }
+Tissue soybean() {
+  static const TissueModel model(find_specimen("soybean")->params);
+  return model.at(551);
+}
 
 TEST(Stop, EndsASolution) {
   const std::vector<double> angles{0, 60};

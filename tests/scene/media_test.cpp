@@ -147,7 +147,10 @@ TEST(Media, TooManyExpectedNullCollisionsAreRefusedWithTheirPlace) {
               refused);
   EXPECT_THAT(refusal_of(R"("string type" "uniformgrid" "float density" [1e-6 1e30] "float sigma_a" 0 )" + spike),
               refused);
-  EXPECT_THAT(refusal_of(R"("string type" "rgbgrid" "rgb sigma_s" [0 0 0 1e20 1e20 1e20] )" + spike), refused);
+  EXPECT_THAT(refusal_of(R"("string type" "rgbgrid" "rgb sigma_a" [0 0 0 0 0 0]
+    "rgb sigma_s" [0 0 0 1e20 1e20 1e20] )" +
+                         spike),
+              refused);
 }
 
 TEST(Media, DenseOrThinMediaAreNotRefused) {

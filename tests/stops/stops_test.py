@@ -1,6 +1,7 @@
 """Jobs whose scenes keep them busy for hours inside one path, one pilot or one step of loading, and end soon after a
 signal or at their time limit. LATEST separates "stops" from "runs for hours", also on a busy machine."""
 
+import json
 import signal
 import subprocess
 import time
@@ -30,9 +31,9 @@ AttributeEnd
 def grid_with_a_spike(kind="uniformgrid", values='"float density" [{}]', none="0", spike="1e30"):
     """A medium of 32 cells along each axis, all but one of them empty: few of the rays that are traced when it is loaded
     meet the cell, all of the camera's do."""
-    n, at = 32, 16
+    n = 32
     cells = [none] * n**3
-    cells[at + n * (at + n * at)] = spike
+    cells[16 + n * (16 + n * 12)] = spike
     return (
         f'MakeNamedMedium "m" "string type" "{kind}" "point3 p0" [-2 -2 -2] "point3 p1" [2 2 2] '
         f'"integer nx" {n} "integer ny" {n} "integer nz" {n} {values.format(" ".join(cells))}\n'
@@ -158,6 +159,18 @@ class Stops(FrondTest):
                     self.assertRegex(err, r"\.pbrt:")
                 for result in ("image.exr", "shares.csv"):
                     (self.folder / result).unlink(missing_ok=True)
+
+    def test_a_path_without_end_leaves_out_its_tile_alone(self):
+        """A spike that few pixels see: what has been rendered is kept, and the tile of those pixels has no samples."""
+        side = 240  # the middle is that of a tile
+        far = RENDERS["null collisions"].replace("LookAt 0 0 4 ", "LookAt 0 0 40 ").replace('"float fov" 4', '"float fov" 90')
+        far = far.replace('resolution" 16', f'resolution" {side}').replace('pixelsamples" 64', 'pixelsamples" 1')
+        command = ["render", str(self.write("far.pbrt", far)), "-o", str(self.folder / "image.exr"), "--json", "-"]
+        process = self.start_frond(command, "--time-limit", "5")
+        out, err = process.communicate()
+        self.assertEqual(process.returncode, 0, err)
+        self.assertIn("the time limit ended: pixels have 0 to 1 samples, not 1", err)
+        self.assertGreater(json.loads(out)["paths"], 0.98 * side**2)
 
     def test_a_stopped_flux_goes_on_to_the_same_result(self):
         """Stopped inside a round of 262,144 paths, of which the first blocks count."""

@@ -217,12 +217,9 @@ TEST_F(Choosing, TheDeadlineEndsAPilotAtAnyMoment) {
     Session session(silent_log(), {.threads = 2});
     SceneDescription description = session.read(scene);
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
-    const auto chosen = choose_models({.session = session,
-                                       .description = description,
-                                       .samples = 1 << 20,
-                                       .is_question = true,
-                                       .deadline = deadline},
-                                      standard_ladder(session.registry()), silent_log());
+    const auto chosen = choose_models(
+        {.session = session, .description = description, .samples = 1 << 20, .is_question = true, .deadline = deadline},
+        standard_ladder(session.registry()), silent_log());
     ASSERT_TRUE(chosen);
     out_of_time += chosen->choice.ground == Choice::Ground::no_time;
   }
