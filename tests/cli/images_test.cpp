@@ -46,15 +46,16 @@ class Images : public testing::Test {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST_F(Images, ConvertNamesWhatIsNotFinite) {
-  image("a.exr", {NAN, 0.5f, kInfinity, NAN, NAN, NAN});
+  image("a.exr", {NAN, NAN, NAN, kInfinity, kInfinity, kInfinity});
   const Outcome shown = frond_command({"convert", path("a.exr"), "-o", path("a.png")});
   EXPECT_EQ(shown.code, 0);
-  EXPECT_THAT(shown.err, HasSubstr("a.exr holds 4 NaN and 1 infinite values in 2 of 16 pixels: NaN is shown black, "
+  EXPECT_THAT(shown.err, HasSubstr("a.exr holds 3 NaN and 3 infinite values in 2 of 16 pixels: NaN is shown black, "
                                    "infinity white"));
   const Image png = read_image(path("a.png"), {}).image;
-  EXPECT_EQ(png.at(0, 0, 0), 0);
-  EXPECT_EQ(png.at(0, 0, 2), 1);
-  EXPECT_EQ(png.at(1, 0, 1), 0);
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(png.at(0, 0, c), 0);
+    EXPECT_EQ(png.at(1, 0, c), 1);
+  }
   const Outcome kept = frond_command({"convert", path("a.exr"), "-o", path("b.exr")});
   EXPECT_THAT(kept.err, HasSubstr("2 of 16 pixels: so does the mean"));
   EXPECT_TRUE(std::isnan(read_image(path("b.exr"), {}).image.at(0, 0, 0)));
@@ -101,13 +102,14 @@ TEST_F(Images, DifferenceStatesNoErrorOfPixelsThatAreNotFinite) {
 }
 
 /// Three parts, "beauty", "depth" and "diffuse_of_leaves", and one part with the channels R, G, B, A, Z and diffuse.R.
-const std::string kParts = FROND_SOURCE_DIR "/tests/public/exr-parts/parts.exr";
-const std::string kLayers = FROND_SOURCE_DIR "/tests/public/exr-parts/layers.exr";
+constexpr const char* kFiles[] = {"parts.exr", "layers.exr"};
 
 TEST_F(Images, PartsAndChannelsThatAreNotReadAreNamed) {
-  const std::string parts = "only the first of the images in \"" + kParts +
+  for (const char* file : kFiles)  // into the scene's folder, whose files are quoted
+    std::filesystem::copy(fmt::format(FROND_SOURCE_DIR "/tests/public/exr-parts/{}", file), path(file));
+  const std::string parts = "only the first of the images in \"" + path("parts.exr") +
                             "\", \"beauty\", is read; 2 are left out: \"depth\", \"diffuse_of_leaves\"";
-  EXPECT_THAT(frond_command({"convert", kParts, "-o", path("a.png")}).err, HasSubstr(parts));
+  EXPECT_THAT(frond_command({"convert", path("parts.exr"), "-o", path("a.png")}).err, HasSubstr(parts));
   const auto check = [this](const std::string& world) {
     folder_.write("s.pbrt", "WorldBegin\n" + world + "\nShape \"sphere\"\n");
     const Outcome o = frond_command({"check", path("s.pbrt")});
@@ -120,7 +122,7 @@ TEST_F(Images, PartsAndChannelsThatAreNotReadAreNamed) {
   const std::string color = "Material \"diffuse\" \"texture reflectance\" \"t\"";
   const std::string bump = "Material \"diffuse\" \"texture displacement\" \"t\"";
   const std::string layers = "channels of the image that are not used: Z, diffuse.R";
-  for (const auto& [file, message] : {std::pair{kParts, parts}, {kLayers, layers}})
+  for (const auto& [file, message] : {std::pair{std::string(kFiles[0]), parts}, {std::string(kFiles[1]), layers}})
     for (const std::string& world : {texture("spectrum", file, color), texture("float", file, bump),
                                      "LightSource \"infinite\" \"string filename\" \"" + file + "\"",
                                      "Material \"diffuse\" \"string normalmap\" \"" + file + "\""}) {

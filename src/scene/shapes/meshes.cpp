@@ -5,6 +5,7 @@
 #include "scene/shapes/bilinear.h"
 #include "scene/shapes/ply.h"
 #include "scene/shapes/subdivision.h"
+#include "system/file_bytes.h"
 
 namespace frond {
 namespace {
@@ -97,8 +98,10 @@ MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
 
 /// Errors in the file are reported at the parameter that names it.
 MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
+  const std::filesystem::path path = p.file("filename");
+  const std::string bytes = read_file_bytes(path, p.where("filename"));
   try {
-    PlyMesh file = read_ply(p.file("filename"));
+    PlyMesh file = read_ply_bytes(bytes, path.string());
     if (file.ignored > 0)
       p.warn("filename",
              fmt::format("{} faces are neither triangles nor quadrilaterals and are left out, as in pbrt-v4",

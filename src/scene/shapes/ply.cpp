@@ -257,9 +257,10 @@ PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
   return result;
 }
 
-PlyMesh read_ply(const std::filesystem::path& path) {
-  const std::string bytes = read_file_bytes(path, {});
-  return read_ply_text(is_gzip(bytes) ? unpack_gzip(bytes, path.string(), {}) : bytes, path.string());
+PlyMesh read_ply_bytes(const std::string& bytes, const std::string& name) {
+  return read_ply_text(is_gzip(bytes) ? unpack_gzip(bytes, name, {}) : bytes, name);
 }
+
+PlyMesh read_ply(const std::filesystem::path& path) { return read_ply_bytes(read_file_bytes(path, {}), path.string()); }
 
 }  // namespace frond

@@ -22,7 +22,10 @@ struct PlyMesh {
 /// multiple of the file's size. Throws InputError with line and column (header, ASCII) or byte offset (binary).
 PlyMesh read_ply(const std::filesystem::path& path);
 
-/// Same for bytes in memory; `name` names the file in errors.
+/// Same for the bytes of a file, which may be compressed; `name` names the file in errors.
+PlyMesh read_ply_bytes(const std::string& bytes, const std::string& name);
+
+/// Same for bytes that are not compressed.
 PlyMesh read_ply_text(std::string_view bytes, const std::string& name);
 
 }  // namespace frond
