@@ -328,7 +328,7 @@ def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None
 def instances(csv: str | os.PathLike, output: str | os.PathLike, *, progress = None, session: Session | None | None = None) -> Result:
     """Write an instance table, for Shape "instances", from CSV.
 
-    The first line names the columns: position x,y,z; scale; orientation as nx,ny,nz or zenith,azimuth (degrees) of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to m22. All other columns are numbers for Texture "instance".
+    The first line names the columns: position x,y,z; size as scale, or as radius for an object of radius 1; orientation as nx,ny,nz or zenith,azimuth (degrees) of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to m22. All other columns are numbers for Texture "instance". Without names: radius x y z nx ny nz. Fields are separated by commas, semicolons, tabs or blanks.
 
     csv: CSV file to read.
     output: Instance table to write, a NumPy file (.npy)."""

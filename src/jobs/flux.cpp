@@ -193,7 +193,8 @@ constexpr std::string_view kOfScene = "scene";
 SpectrumPtr named_irradiance(const JobRun& run) {
   const std::string light = run.args.text("irradiance");
   if (light == kOfScene) return nullptr;
-  if (light.ends_with(".spd")) return read_spd(light, {});
+  const auto names = spectrum_names();
+  if (std::ranges::find(names, light) == names.end() && is_spectrum_file(light, light)) return read_spd(light, {});
   SpectrumPtr spectrum = named_spectrum(light, {});
   if (!light.starts_with("solar-"))
     fail({}, "{}: \"{}\" is not in W/(m2 nm): an .spd file in this unit is needed, or one of the spectra solar-*",

@@ -7,10 +7,9 @@
 #include <optional>
 
 #include "jobs/record/common_params.h"
-#include "scene/format/tokenizer.h"
-#include "scene/format/words.h"
 #include "scene/geometry/instance_writer.h"
 #include "system/file_bytes.h"
+#include "system/text_table.h"
 
 namespace frond {
 
@@ -28,83 +27,53 @@ constexpr JobParam kParams[] = {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A CSV file of numbers, read line by line. Its first line names the columns.
+/// A table of numbers, read row by row.
 class NumberTable {
  public:
   explicit NumberTable(const std::string& path)
-      : file_(std::make_shared<const std::string>(path)), text_(read_file_bytes(path, {})), rest_(text_) {
-    std::string_view line;
-    if (!next_line(line)) fail({file_, 1, 1}, "the file is empty: its first line names the columns");
-    for (const std::string& name : split(std::string(trimmed(line)), ',')) names_.emplace_back(trimmed(name));
-    for (size_t i = 0; i < names_.size(); ++i)
-      if (std::find(names_.begin(), names_.begin() + ptrdiff_t(i), names_[i]) != names_.begin() + ptrdiff_t(i))
-        fail({file_, line_, 1}, "there are two columns \"{}\"", names_[i]);
+      : text_(read_file_bytes(path, {})), rows_(text_, path, TableComments::anywhere) {
+    if (rows_.columns() == 0) fail(rows_.names_where(), "the file is empty: its first line names the columns");
+    for (const TableField& field : rows_.names()) names_.emplace_back(field.text);
+    if (rows_.has_names()) return;
+    if (rows_.columns() != std::size(kLeafCloud))
+      fail(rows_.names_where(),
+           "the first line holds {} numbers, it names the columns; without names, a leaf cloud of Eradiate or RAMI has "
+           "the {} columns {}",
+           rows_.columns(), std::size(kLeafCloud), fmt::join(kLeafCloud, " "));
+    names_.assign(std::begin(kLeafCloud), std::end(kLeafCloud));
   }
 
+  /// Names of the columns; "" for row numbers.
   const std::vector<std::string>& names() const { return names_; }
-  /// Number of lines with values.
-  size_t count() const {
-    size_t lines = 0;
-    std::string_view rest = rest_;
-    while (!rest.empty()) {
-      const size_t end = rest.find('\n');
-      lines += !trimmed(rest.substr(0, end)).empty();
-      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    }
-    return lines;
-  }
-  /// Reads the next line that is not blank. Returns false at the end. Throws InputError with line and column.
+  bool has_names() const { return rows_.has_names(); }
+  Location names_where() const { return rows_.names_where(); }
+  size_t rows_left() const { return rows_.rows_left(); }
+  /// Reads the next row. Returns false at the end. Throws InputError with line and column.
   bool next(std::vector<double>& values) {
-    std::string_view line;
-    do {
-      if (!next_line(line)) return false;
-    } while (trimmed(line).empty());
-    values.clear();
-    columns_.clear();
-    const char* begin = line.data();
-    while (true) {
-      const size_t comma = line.find(',');
-      const std::string_view word = trimmed(line.substr(0, comma));
-      const auto value = parse_number(word);
-      columns_.push_back(int(line.data() - begin) + 1);
-      if (!value || !std::isfinite(*value)) fail(where(values.size()), "a number is needed, \"{}\" was given", word);
-      values.push_back(*value);
-      if (comma == std::string_view::npos) break;
-      line.remove_prefix(comma + 1);
+    if (!rows_.next()) return false;
+    rows_.check_fields();
+    values.resize(names_.size());
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (names_[i].empty()) continue;
+      const std::string_view word = rows_.fields()[i].text;
+      const auto value = rows_.number(word);
+      if (!value || !std::isfinite(*value))
+        fail(where(i), "column \"{}\" needs a number, \"{}\" was given; remove columns of words", names_[i], word);
+      values[i] = *value;
     }
-    if (values.size() != names_.size())
-      fail({file_, line_, 1}, "{} values, the first line names {} columns", values.size(), names_.size());
     return true;
   }
-  Location where() const { return {file_, line_, 1}; }
-  /// Place of a value of the last line.
-  Location where(size_t value) const { return {file_, line_, columns_[value]}; }
-  const std::shared_ptr<const std::string>& file() const { return file_; }
+  Location where() const { return rows_.where(); }
+  /// Location of a value of the last row.
+  Location where(size_t value) const { return rows_.where(value); }
+
+  /// Columns of a file without names: a disk's radius, centre and normal in each line.
+  static constexpr const char* kLeafCloud[] = {"radius", "x", "y", "z", "nx", "ny", "nz"};
 
  private:
-  /// Returns the text without blanks at both ends.
-  static std::string_view trimmed(std::string_view s) {
-    constexpr std::string_view kBlank = " \t\r";
-    const size_t first = s.find_first_not_of(kBlank);
-    return first == std::string_view::npos ? std::string_view()
-                                           : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
-  }
-  /// Takes the next line, and counts lines for errors. Returns false at the end.
-  bool next_line(std::string_view& line) {
-    if (rest_.empty()) return false;
-    const size_t end = rest_.find('\n');
-    line = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    ++line_;
-    return true;
-  }
-
-  std::shared_ptr<const std::string> file_;
   std::string text_;
-  std::string_view rest_;
+  TextTable rows_;
   std::vector<std::string> names_;
-  std::vector<int> columns_;  ///< where the values of the last line begin
-  int line_ = 0;
 };
 
 /// Assigns columns to the position, orientation and scale of an instance.
@@ -112,11 +81,12 @@ class Placement {
  public:
   /// Throws InputError if the position is missing, or if the orientation is incomplete or given twice.
   explicit Placement(const NumberTable& table) : names_(table.names()) {
-    const Location where{table.file(), 1, 1};
+    const Location where = table.names_where();
     for (const char* name : {"x", "y", "z"})
-      if (!place(name)) fail(where, "there is no column \"{}\"; x, y and z are the position of an instance", name);
+      if (!place(name, where))
+        fail(where, "there is no column \"{}\"; x, y and z are the position of an instance", name);
     const auto whole = [&](std::initializer_list<const char*> group) {
-      const auto given = std::ranges::count_if(group, [&](const char* name) { return place(name).has_value(); });
+      const auto given = std::ranges::count_if(group, [&](const char* name) { return place(name, where).has_value(); });
       if (given != 0 && size_t(given) != group.size())
         fail(where, "columns {} must be given together: {} of them are present", fmt::join(group, ", "), given);
       return given != 0;
@@ -127,19 +97,59 @@ class Placement {
     by_angles_ = whole({"zenith", "azimuth"});
     if (by_matrix_ + by_quaternion_ + by_normal_ + by_angles_ > 1)
       fail(where, "give the orientation by only one of a matrix, a quaternion, a normal and angles");
-    place("scale");
-    if (place("spin") && (by_matrix_ || by_quaternion_))
+    const bool has_scale = place("scale", where).has_value();
+    by_radius_ = place("radius", where).has_value();
+    if (has_scale && by_radius_)
+      fail(where,
+           "\"scale\" and \"radius\" both give the size of an instance: keep one, or rename the other, which is "
+           "then a number for Texture \"instance\"");
+    if (place("spin", where) && (by_matrix_ || by_quaternion_))
       fail(where, "\"spin\" is a rotation about a normal; a matrix or a quaternion includes it");
     for (size_t i = 0; i < names_.size(); ++i)
-      if (!used_.contains(names_[i])) columns_.push_back(i);
+      if (!names_[i].empty() && !std::ranges::any_of(used_, [i](const auto& u) { return u.second == i; }))
+        add_column(i, where);
   }
 
   /// Throws InputError for a scale below 0: it would turn a leaf into its mirror image, with the sides swapped.
   void check_scale(const NumberTable& table, const std::vector<double>& v) const {
-    const auto column = used_.find("scale");
-    if (column != used_.end() && v[column->second] < 0)
+    if (const auto column = used_.find("scale"); column != used_.end() && v[column->second] < 0)
       fail(table.where(column->second), "the scale {:g} is below 0: to turn a leaf over, negate its normal",
            v[column->second]);
+    if (const auto column = used_.find("radius"); column != used_.end() && !(v[column->second] > 0))
+      fail(table.where(column->second), "the radius {:g} is not above 0", v[column->second]);
+  }
+
+  /// Throws InputError for a file without names whose last three columns are no unit vector.
+  void check_leaf_cloud(const NumberTable& table, const std::vector<double>& v) const {
+    constexpr double kRounding = 0.02;
+    const double length = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6]);
+    if (std::abs(length - 1) > kRounding)
+      fail(table.where(4),
+           "the normal has the length {:.4g}: a file without names of columns has {}; name the columns "
+           "in the first line",
+           length, fmt::join(NumberTable::kLeafCloud, " "));
+  }
+
+  /// Whether a column "radius" scales the object.
+  bool by_radius() const { return by_radius_; }
+  /// Columns that look like a size or an orientation and are none, while the table has no other.
+  std::vector<std::string> unclear() const {
+    constexpr std::string_view kSizes[] = {"size",      "diameter", "length", "width",  "area",  "leafarea",
+                                           "leaf_area", "r",        "sx",     "sy",     "sz",    "scale_x",
+                                           "scale_y",   "scale_z",  "scalex", "scaley", "scalez"};
+    constexpr std::string_view kAngles[] = {"theta",      "phi",         "inclination", "tilt",     "roll",
+                                            "pitch",      "yaw",         "rx",          "ry",       "rz",
+                                            "zenith_deg", "azimuth_deg", "normal_x",    "normal_y", "normal_z"};
+    const bool has_size = by_radius_ || by_matrix_ || used_.contains("scale"),
+               has_angle = by_matrix_ || by_quaternion_ || by_normal_ || by_angles_;
+    std::vector<std::string> found;
+    for (const size_t column : columns_) {
+      const std::string name = lower_case(names_[column]);
+      if ((!has_size && std::ranges::find(kSizes, name) != std::end(kSizes)) ||
+          (!has_angle && std::ranges::find(kAngles, name) != std::end(kAngles)))
+        found.push_back(names_[column]);
+    }
+    return found;
   }
 
   /// Indices of all other columns.
@@ -152,7 +162,7 @@ class Placement {
       return column == used_.end() ? otherwise : v[column->second];
     };
     const Vec3d position{at("x", 0), at("y", 0), at("z", 0)};
-    const double scale = at("scale", 1);
+    const double scale = at(by_radius_ ? "radius" : "scale", 1);
     if (by_matrix_) {
       AffineMap map;
       constexpr const char* kNames[3][3] = {{"m00", "m01", "m02"}, {"m10", "m11", "m12"}, {"m20", "m21", "m22"}};
@@ -173,11 +183,21 @@ class Placement {
   }
 
  private:
-  /// Returns the index of a column and marks it as used; nullopt if there is none.
-  std::optional<size_t> place(const std::string& name) {
-    const auto found = std::ranges::find(names_, name);
+  /// Returns the index of a column, in any case of its name, and marks it as used; nullopt if there is none. Throws
+  /// InputError if there are several.
+  std::optional<size_t> place(const std::string& name, const Location& where) {
+    const auto is = [&](const std::string& other) { return lower_case(other) == name; };
+    const auto found = std::ranges::find_if(names_, is);
     if (found == names_.end()) return {};
+    if (std::ranges::count_if(names_, is) > 1) fail(where, "there are two columns \"{}\"", name);
     return used_[name] = size_t(found - names_.begin());
+  }
+
+  /// Adds a column for textures.
+  void add_column(size_t column, const Location& where) {
+    for (const size_t other : columns_)
+      if (names_[other] == names_[column]) fail(where, "there are two columns \"{}\"", names_[column]);
+    columns_.push_back(column);
   }
 
   /// Rotation by the quaternion (q, w), normalized here, and uniform scaling.
@@ -195,8 +215,21 @@ class Placement {
   std::vector<std::string> names_;
   std::map<std::string, size_t, std::less<>> used_;
   std::vector<size_t> columns_;
-  bool by_matrix_ = false, by_quaternion_ = false, by_normal_ = false, by_angles_ = false;
+  bool by_matrix_ = false, by_quaternion_ = false, by_normal_ = false, by_angles_ = false, by_radius_ = false;
 };
+
+/// Names what a table leaves to assumptions.
+void tell(const JobRun& run, const NumberTable& table, const Placement& placement) {
+  if (!table.has_names())
+    run.log().info(fmt::format("{}: no names of columns: they are taken as {}, as Eradiate and RAMI write leaf clouds",
+                               run.args.text("csv"), fmt::join(NumberTable::kLeafCloud, " ")));
+  if (placement.by_radius()) run.log().info("\"radius\" is the scale: the object that is placed has the radius 1");
+  if (const auto unclear = placement.unclear(); !unclear.empty())
+    run.log().warn(table.names_where(),
+                   fmt::format("\"{}\" changes neither size nor orientation; columns for these are scale or radius, "
+                               "and nx,ny,nz or zenith,azimuth (degrees): rename or remove it",
+                               fmt::join(unclear, "\", \"")));
+}
 
 /// The job: converts row by row, so that memory does not grow with the number of instances.
 Result instances(const JobRun& run) {
@@ -204,13 +237,15 @@ Result instances(const JobRun& run) {
   const Placement placement(table);
   std::vector<std::string> names;
   for (const size_t column : placement.columns()) names.push_back(table.names()[column]);
-  const size_t rows = table.count();
-  if (rows == 0) fail({table.file(), 1, 1}, "the file has no rows, only the names of columns");
+  const size_t rows = table.rows_left();
+  if (rows == 0) fail(table.names_where(), "the file has no rows, only the names of columns");
+  tell(run, table, placement);
   InstanceWriter writer(binary_file_of(run.args, "output"), rows, names);
   std::vector<double> values;
   std::vector<float> numbers(names.size());
   while (table.next(values)) {
     placement.check_scale(table, values);
+    if (!table.has_names()) placement.check_leaf_cloud(table, values);
     const AffineMap map = placement.map(values, table.where());
     if (const std::string problem = problem_of(map); !problem.empty())
       fail(table.where(), "this instance is not possible: {}", problem);
@@ -218,8 +253,9 @@ Result instances(const JobRun& run) {
     writer.add(map, numbers);
   }
   writer.finish();
-  run.log().info(fmt::format("{}: {} instance{}{}", run.args.text("output"), rows, rows == 1 ? "" : "s",
-                             names.empty() ? "" : fmt::format(", with {}", fmt::join(names, ", "))));
+  run.log().info(fmt::format(
+      "{}: {} instance{}{}", run.args.text("output"), rows, rows == 1 ? "" : "s",
+      names.empty() ? "" : fmt::format(", with numbers for Texture \"instance\": {}", fmt::join(names, ", "))));
   return {.facts = {{"instances", double(rows)}}};
 }
 
@@ -227,9 +263,10 @@ Result instances(const JobRun& run) {
 
 extern const JobInfo kInstancesJob(
     "instances", "Scenes", "Write an instance table, for Shape \"instances\", from CSV.",
-    "The first line names the columns: position x,y,z; scale; orientation as nx,ny,nz or zenith,azimuth (degrees) "
-    "of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to "
-    "m22. All other columns are numbers for Texture \"instance\".",
+    "The first line names the columns: position x,y,z; size as scale, or as radius for an object of radius 1; "
+    "orientation as nx,ny,nz or zenith,azimuth (degrees) of the z axis, which is a leaf's normal, and spin about it "
+    "(degrees), or as qw,qx,qy,qz, or m00,m01 to m22. All other columns are numbers for Texture \"instance\". Without "
+    "names: radius x y z nx ny nz. Fields are separated by commas, semicolons, tabs or blanks.",
     kParams, SessionUse::none, instances);
 
 }  // namespace frond

@@ -28,10 +28,8 @@ SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& descript
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
   const auto names = spectrum_names();
   const std::filesystem::path path = description.resolve(words[0], p.value_where);
-  std::error_code error;
   const bool is_named = std::ranges::find(names, words[0]) != names.end();
-  if (!is_named && (words[0].ends_with(".spd") || std::filesystem::is_regular_file(path, error)))
-    return read_spd(path, p.value_where);
+  if (!is_named && is_spectrum_file(words[0], path)) return read_spd(path, p.value_where);
   return named_spectrum(words[0], p.value_where);
 }
 
@@ -239,8 +237,10 @@ void SceneResolver::warn(const Location& where, std::string_view message) {
 }
 
 void SceneResolver::warn_of_clamping(const ParsedParam& p, double most) {
+  constexpr double kLargestFraction = 2;
   warn(p.value_where,
-       fmt::format("\"{}\" goes up to {:.6g}, a reflectance lies in 0 to 1: it is clamped", p.name, most));
+       fmt::format("\"{}\" goes up to {:.6g}, a reflectance lies in 0 to 1: it is clamped{}", p.name, most,
+                   most > kLargestFraction && most <= 100 ? "; are these percent? Divide them by 100" : ""));
 }
 
 /// Returns a reflectance with channels clamped to 1, as in pbrt-v4.

@@ -1,67 +1,161 @@
 #include "spectra/spd_file.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <system_error>
 
+#include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
+#include "system/text_table.h"
 
 namespace frond {
 namespace {
 
-/// Number with its position in the file.
-struct Number {
-  double value;
-  Location where;
+/// The message does not quote the file: a scene could name any file here, and its content would go to whoever sees the
+/// log.
+double number_of(const TextTable& table, size_t field) {
+  if (const auto value = table.number(table.fields()[field].text)) return *value;
+  fail(table.where(field), "a spectrum file has a wavelength (nm) and a value in each line: this is not a number");
+}
+
+/// Reads numbers in turn, in lines of any length.
+std::vector<SpectrumPoint> read_pairs(TextTable& table) {
+  std::vector<SpectrumPoint> points;
+  bool has_value = true, is_odd = true;
+  size_t rows = 0;
+  for (; table.next(); ++rows) {
+    if (!table.is_blank_separated() && table.fields().size() != 2)
+      fail(table.where(),
+           "a line has a wavelength (nm) and a value, {} numbers are here; a first line that names the "
+           "columns tells more of them apart",
+           table.fields().size());
+    is_odd = is_odd && table.fields().size() % 2 == 1 && table.fields().size() == table.columns();
+    for (size_t i = 0; i < table.fields().size(); ++i, has_value = !has_value) {
+      const double value = number_of(table, i);
+      if (has_value) points.push_back({value, 0, table.where(i)});
+      points.back().value = value;
+    }
+  }
+  // Lines of three numbers or more are a table, not pairs.
+  if (is_odd && rows > 1 && table.columns() > 1)
+    fail(points[0].where,
+         "each line has {} numbers, a wavelength (nm) and a value are expected; a first line that "
+         "names the columns tells them apart",
+         table.columns());
+  if (!has_value)
+    fail(points.back().where, "wavelength {} nm has no value: the file ends after it", points.back().lambda_nm);
+  return points;
+}
+
+/// Names of columns for a message: so many, and so much of each.
+std::string listed(const TextTable& table, const std::vector<size_t>& columns) {
+  constexpr size_t kMost = 16, kLength = 40;
+  std::string text;
+  for (size_t i = 0; i < std::min(columns.size(), kMost); ++i)
+    text += fmt::format("{}\"{}\"", i > 0 ? ", " : "", table.names()[columns[i]].text.substr(0, kLength));
+  return text + (columns.size() > kMost ? ", ..." : "");
+}
+
+/// A table whose first line names its columns.
+class NamedColumns {
+ public:
+  explicit NamedColumns(TextTable& table) : table_(table) {
+    const auto& names = table.names();
+    wavelength_ = wavelength_column(names).value_or(0);
+    for (size_t i = 0; i < names.size(); ++i)
+      if (i != wavelength_ && !names[i].text.empty()) values_.push_back(i);
+    if (values_.empty())
+      fail(table.names_where(),
+           "a spectrum file has a column of wavelengths (nm) and one of values: this line is no "
+           "pair of numbers, and does not name two columns");
+  }
+
+  std::vector<SpectrumPoint> read(std::string_view wanted) {
+    std::vector<std::vector<double>> values(values_.size());
+    std::vector<SpectrumPoint> points;
+    while (table_.next()) {
+      table_.check_fields();
+      points.push_back({number_of(table_, wavelength_), 0, table_.where(wavelength_)});
+      for (size_t c = 0; c < values_.size(); ++c)
+        if (values_.size() == 1 || is_wanted(c, wanted)) values[c].push_back(number_of(table_, values_[c]));
+    }
+    if (points.empty()) fail(table_.names_where(), "the file holds no spectrum: no line of numbers follows this one");
+    // pandas writes wavelengths that are an index without a name.
+    if (table_.names()[wavelength_].text.empty() && points[0].lambda_nm == 1)
+      fail(points[0].where, "there is no column of wavelengths: this one has no name and counts rows");
+    // Names are quoted now that the file is known to be a table of numbers.
+    const size_t chosen = choose(wanted);
+    for (size_t i = 0; i < points.size(); ++i) points[i].value = values[chosen][i];
+    return points;
+  }
+
+ private:
+  bool is_wanted(size_t c, std::string_view wanted) const {
+    return lower_case(table_.names()[values_[c]].text) == lower_case(wanted);
+  }
+  size_t choose(std::string_view wanted) const {
+    const auto is = [&](std::string_view text) {
+      std::vector<size_t> found;
+      for (size_t c = 0; c < values_.size(); ++c)
+        if (is_wanted(c, text)) found.push_back(c);
+      return found;
+    };
+    if (wanted.empty() && values_.size() == 1) return 0;
+    const auto found = wanted.empty() ? std::vector<size_t>{} : is(wanted);
+    if (found.size() == 1) return found[0];
+    if (found.size() > 1) fail(table_.names_where(), "there are {} columns \"{}\"", found.size(), wanted);
+    if (!wanted.empty())
+      fail(table_.names_where(), "there is no column \"{}\"; there are {}", wanted, listed(table_, values_));
+    fail(table_.names_where(), "there are {} columns of values, {}: FILE:COLUMN takes one of them, as in \"{}:{}\"",
+         values_.size(), listed(table_, values_), std::filesystem::path(*table_.names_where().file).filename().string(),
+         table_.names()[values_[0]].text);
+  }
+
+  TextTable& table_;
+  size_t wavelength_ = 0;
+  std::vector<size_t> values_;  ///< columns
 };
-
-/// Skips a leading +, which std::from_chars does not accept. The message does not quote the file: a scene could name
-/// any file here, and its content would go to whoever sees the log.
-double parse_number(std::string_view word, const Location& where) {
-  const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size())
-    fail(where, "a spectrum file has two numbers in each line, with a blank between: this is not a number");
-  return value;
-}
-
-/// Appends the numbers of a line; `where` has the line's number.
-void parse_line(std::string_view line, Location where, std::vector<Number>& numbers) {
-  line = line.substr(0, line.find('#'));
-  constexpr std::string_view kSpace = " \t\r\f\v";
-  for (size_t begin = 0; (begin = line.find_first_not_of(kSpace, begin)) != line.npos;) {
-    const size_t end = std::min(line.find_first_of(kSpace, begin), line.size());
-    where.column = static_cast<int>(begin) + 1;
-    numbers.push_back({parse_number(line.substr(begin, end - begin), where), where});
-    begin = end;
-  }
-}
-
-std::vector<Number> read_numbers(const std::filesystem::path& path, const Location& where) {
-  const std::string text = read_file_bytes(path, where, "spectrum file");
-  Location here{std::make_shared<const std::string>(path.string()), 1, 1};
-  std::vector<Number> numbers;
-  for (std::string_view rest = text; !rest.empty(); ++here.line) {
-    const size_t end = std::min(rest.find('\n'), rest.size());
-    parse_line(rest.substr(0, end), here, numbers);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  if (numbers.empty()) fail(here, "the file holds no spectrum: wavelength (nm) and value in turn are expected");
-  return numbers;
-}
 
 }  // namespace
 
-std::vector<SpectrumPoint> read_spd_points(const std::filesystem::path& path, const Location& where) {
-  const std::vector<Number> numbers = read_numbers(path, where);
-  if (numbers.size() % 2 != 0)
-    fail(numbers.back().where, "wavelength {} nm has no value: the file ends after it", numbers.back().value);
-  std::vector<SpectrumPoint> points;
-  for (size_t i = 0; i < numbers.size(); i += 2)
-    points.push_back({numbers[i].value, numbers[i + 1].value, numbers[i].where});
+std::vector<SpectrumPoint> parse_spd_points(std::string_view text, const std::string& name, std::string_view column) {
+  TextTable table(text, name, TableComments::anywhere);
+  if (table.columns() == 0)
+    fail(table.names_where(), "the file holds no spectrum: wavelength (nm) and value in turn are expected");
+  if (!column.empty() && !table.has_names())
+    fail(table.names_where(), "there is no line that names the columns, so that \"{}\" could be one of them", column);
+  std::vector<SpectrumPoint> points = table.has_names() ? NamedColumns(table).read(column) : read_pairs(table);
   check_points(points);
   return points;
+}
+
+SpectrumColumn spectrum_column(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  const size_t colon = text.rfind(':');
+  std::error_code error;
+  if (colon == text.npos || colon == 0 || std::filesystem::exists(path, error) ||
+      !std::filesystem::is_regular_file(text.substr(0, colon), error))
+    return {path, {}};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+std::string spectrum_name(const std::filesystem::path& path) {
+  const auto [file, column] = spectrum_column(path);
+  return column.empty() ? file.stem().string() : column;
+}
+
+bool is_spectrum_file(std::string_view word, const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 4> kEndings{".spd", ".csv", ".tsv", ".txt"};
+  std::error_code error;
+  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return word.ends_with(ending); }) ||
+         std::filesystem::is_regular_file(spectrum_column(path).file, error);
+}
+
+std::vector<SpectrumPoint> read_spd_points(const std::filesystem::path& path, const Location& where) {
+  const auto [file, column] = spectrum_column(path);
+  return parse_spd_points(read_file_bytes(file, where, "spectrum file"), file.string(), column);
 }
 
 SpectrumPtr read_spd(const std::filesystem::path& path, const Location& where) {

@@ -56,6 +56,16 @@ TEST(TableFile, ReadsWhatPeopleWrite) {
   EXPECT_TRUE(table.has_equal_sides());
 }
 
+TEST(TableFile, ReadsTheLayoutsOfSpreadsheets) {
+  for (const std::string text :
+       {"theta_deg;wavelength_nm;Rs;Rd;T\r\n8;550;0,04;0,06;0,12\r\n",
+        "THETA_DEG,WAVELENGTH_NM,RS,RD,T\n8,550,.04,.06,.12\n", "theta_deg wavelength_nm Rs Rd T\n8 550 .04 .06 .12\n",
+        "\"\",\"theta_deg\",\"wavelength_nm\",\"Rs\",\"Rd\",\"T\"\n\"1\",8,550,.04,.06,.12\n"}) {
+    EXPECT_TRUE(is_leaf_table(text)) << text;
+    EXPECT_EQ(parse(text).at(0, 0), (Shares{.04, .06, .12})) << text;
+  }
+}
+
 TEST(TableFile, RefusesBadRowsByLine) {
   const std::string two_rows = kColumns + "0,550,.1,.2,.3\n";
   struct {
@@ -85,7 +95,7 @@ TEST(TableFile, RefusesBadRowsByLine) {
 TEST(TableFile, RefusesBadColumns) {
   EXPECT_THAT(refusal(""), HasSubstr("the table is empty: a line with the names of the columns and then a row"));
   EXPECT_THAT(refusal("# nothing\n\n" + kColumns),
-              StartsWith("leaf.csv:4:1: the table is empty: a row for each angle"));
+              StartsWith("leaf.csv:3:1: the table is empty: a row for each angle"));
   EXPECT_THAT(refusal(std::string("\x7f"
                                   "ELF\0",
                                   5)),
@@ -95,7 +105,7 @@ TEST(TableFile, RefusesBadColumns) {
   EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd\n"), HasSubstr("there is no column \"T\"; a leaf's table has"));
   EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd,T,T\n"), HasSubstr("leaf.csv:1:33: there are two columns \"T\""));
   EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd,T,Rs_se\n"), HasSubstr("come together or not at all"));
-  EXPECT_THAT(refusal("0,550,.1,.1,.1\n"), HasSubstr("no column \"0\""));
+  EXPECT_THAT(refusal("0,550,.1,.1,.1\n"), HasSubstr("the first line has no names of columns"));
   EXPECT_THAT(refusal(kColumns + "100,550,.1,.1,.1\n"), HasSubstr("those of the adaxial side are missing"));
   EXPECT_THAT(error_of([] { read_table("/no/such.csv", {}); }), HasSubstr("No such file"));
   EXPECT_THAT(error_of([] { read_table("/tmp", {}); }), HasSubstr("cannot read leaf table \"/tmp\""));

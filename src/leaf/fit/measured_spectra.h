@@ -22,16 +22,17 @@ struct SpectraMeasurement {
 struct MeasuredSpectra {
   std::vector<LeafMeasurement> measurements;
   size_t left_out = 0;          ///< rows beyond kConstantsRange_nm, or without a number
-  std::string in_percent = {};  ///< "R", "T" or "R and T": what is in percent in the file; `measurements` are fractions
+  std::string in_percent = {};  ///< "R", "R and T", ...: what is in percent in the file; `measurements` are fractions
+  char derived = 0;             ///< 'T' or 'R': follows from the other one and the absorptance; 0: none
+  std::vector<std::string> unused = {};  ///< names of columns that are not read
 };
 
-/// Reads text as instruments export it: rows of numbers separated by commas, semicolons, tabs or spaces, after lines of
-/// comment (#) and at most one line of column names. Names, in any case and with or without a unit behind them:
-/// wavelength (nm, lambda, wvl), R (reflectance, refl), T (transmittance, trans), theta_deg (angle), side (adaxial or
-/// upper, abaxial or lower), leaf (material, sample); other columns are ignored. Without names: wavelength, R and, if
+/// Reads text as instruments export it, in any layout that TextTable reads. Names of columns, in any case and with or
+/// without a unit behind them: wavelength (nm, lambda, wvl), R (reflectance, refl), T (transmittance, trans), A
+/// (absorptance), theta_deg (angle), side (adaxial or upper, abaxial or lower), leaf (material, sample); others are
+/// listed as unused. If R or T has no column, it is 1 less the other one and A. Without names: wavelength, R and, if
 /// there are three columns, T. Wavelengths below 100 are in micrometres. A column is in percent if its name says so or,
-/// where no name has a unit, if most of its values are above 1.5. Decimals may have a comma if fields are not separated
-/// by one. Throws InputError with `name`, line and column.
+/// where no name has a unit, if most of its values are above 1.5. Throws InputError with `name`, line and column.
 MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how);
 
 /// One leaf of a file with several.

@@ -3,13 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <optional>
 
-#include "system/csv_fields.h"
 #include "system/file_bytes.h"
+#include "system/text_table.h"
 
 namespace frond::leaf {
 namespace {
@@ -20,8 +20,6 @@ constexpr size_t kRequired = kT + 1;
 /// Columns that instruments write in addition and that follow from the others.
 constexpr std::string_view kPassedOver[] = {"R", "A", "R_se", "A_se"};
 constexpr std::string_view kErrorComment = "# error ";
-
-using Field = CsvField;
 
 struct Row {
   std::array<double, kColumns> value{};
@@ -34,26 +32,29 @@ struct Row {
 /// Column of each field of a row; kColumns: ignored.
 class Header {
  public:
-  explicit Header(const std::vector<Field>& fields) {
-    for (const auto& [name, where] : fields) {
-      columns_.push_back(column(name, where));
+  explicit Header(const TextTable& table) : table_(table) {
+    const auto& names = table.names();
+    if (names.empty()) fail(table.names_where(), "the first line has no names of columns; {}", expected());
+    for (size_t i = 0; i < names.size(); ++i) {
+      const Location where = table.names_where(i);
+      columns_.push_back(column(names[i].text, where));
       if (columns_.back() == kColumns) continue;
-      if (has_[columns_.back()]) fail(where, "there are two columns \"{}\"", name);
+      if (has_[columns_.back()]) fail(where, "there are two columns \"{}\"", names[i].text);
       has_[columns_.back()] = true;
     }
     for (size_t c = 0; c < kRequired; ++c)
-      if (!has_[c]) fail(fields[0].where, "there is no column \"{}\"; {}", kNames[c], expected());
+      if (!has_[c]) fail(table.names_where(), "there is no column \"{}\"; {}", kNames[c], expected());
     if (has_errors() != (has_[kRdError] && has_[kTError]) || has_[kRdError] != has_[kTError])
-      fail(fields[0].where, "the columns Rs_se, Rd_se and T_se come together or not at all");
+      fail(table.names_where(), "the columns Rs_se, Rd_se and T_se come together or not at all");
   }
 
   bool has_errors() const { return has_[kRsError]; }
-  Row row(const std::vector<Field>& fields) const {
-    if (fields.size() != columns_.size())
-      fail(fields[0].where, "{} fields, but the file has {} columns", fields.size(), columns_.size());
-    Row row{.where = fields[0].where};
-    for (size_t i = 0; i < fields.size(); ++i)
-      if (columns_[i] != kColumns) row.value[columns_[i]] = checked(columns_[i], fields[i]);
+  /// Returns the row that the table has read.
+  Row row() const {
+    table_.check_fields();
+    Row row{.where = table_.where()};
+    for (size_t i = 0; i < columns_.size(); ++i)
+      if (columns_[i] != kColumns) row.value[columns_[i]] = checked(columns_[i], i);
     const double sum = row.value[kRs] + row.value[kRd] + row.value[kT];
     constexpr double kRounding = 1e-6;
     if (sum > 1 + kRounding) fail(row.where, "Rs + Rd + T is {:.7g}: a leaf scatters 1 at most", sum);
@@ -68,26 +69,29 @@ class Header {
   }
 
   static size_t column(std::string_view name, const Location& where) {
-    if (std::ranges::find(kPassedOver, name) != std::end(kPassedOver)) return kColumns;
-    const auto* found = std::ranges::find(kNames, name);
+    const auto is = [&](std::string_view other) { return lower_case(name) == lower_case(other); };
+    if (name.empty() || std::ranges::any_of(kPassedOver, is)) return kColumns;
+    const auto* found = std::ranges::find_if(kNames, is);
     if (found != std::end(kNames)) return static_cast<size_t>(found - kNames);
     const std::string_view meant = nearest(name, {std::begin(kNames), std::end(kNames)});
     fail(where, "there is no column \"{}\" in a leaf's table{}; {}", name,
          meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant), expected());
   }
 
-  static double checked(size_t column, const Field& field) {
-    const auto number = field_number(field.text, ',');
-    if (!number) fail(field.where, "{} is a number, \"{}\" was given", kNames[column], field.text);
+  double checked(size_t column, size_t field) const {
+    const std::string_view text = table_.fields()[field].text;
+    const Location where = table_.where(field);
+    const auto number = table_.number(text);
+    if (!number) fail(where, "{} is a number, \"{}\" was given", kNames[column], text);
     const double v = *number;
-    if (column == kTheta && !(v >= 0 && v <= 180)) fail(field.where, "theta_deg is from 0 to 180, {} was given", v);
-    if (column == kWavelength && !(v > 0 && std::isfinite(v)))
-      fail(field.where, "wavelength_nm is above 0, {} was given", v);
+    if (column == kTheta && !(v >= 0 && v <= 180)) fail(where, "theta_deg is from 0 to 180, {} was given", v);
+    if (column == kWavelength && !(v > 0 && std::isfinite(v))) fail(where, "wavelength_nm is above 0, {} was given", v);
     if (column >= kRs && !(v >= 0 && v <= 1))
-      fail(field.where, "{} is a share of the light, from 0 to 1; {} was given", kNames[column], v);
+      fail(where, "{} is a share of the light, from 0 to 1; {} was given", kNames[column], v);
     return v;
   }
 
+  const TextTable& table_;
   std::vector<size_t> columns_;
   std::array<bool, kColumns> has_{};
 };
@@ -160,45 +164,43 @@ std::string to_csv(const Table& table, std::string_view header) {
   return text;
 }
 
+namespace {
+
+/// The error that the comments of a table state; 0 if they do not.
+double stated_error(std::string_view text) {
+  const size_t begin = text.starts_with(kErrorComment) ? 0 : text.find(fmt::format("\n{}", kErrorComment));
+  if (begin == text.npos) return 0;
+  const size_t number = begin + (begin > 0 ? 1 : 0) + kErrorComment.size();
+  double error = 0;
+  std::from_chars(text.data() + number, text.data() + text.size(), error);
+  return error;
+}
+
+}  // namespace
+
 Table parse_table(std::string_view text, const std::string& name) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  Location here{std::make_shared<const std::string>(name), 1, 1};
-  if (text.find('\0') != text.npos) fail(here, "not a text file: a leaf table is a CSV file");
-  std::optional<Header> header;
+  TextTable rows(text, name);
+  if (rows.columns() == 0)
+    fail(rows.names_where(),
+         "the table is empty: a line with the names of the columns and then a row for each angle and wavelength is "
+         "expected");
+  const Header header(rows);
   std::vector<Spectrum> spectra;
   std::map<double, size_t> known;
-  double error = 0;
-  for (; !text.empty(); ++here.line) {
-    const size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.starts_with(kErrorComment))
-      error = field_number(trimmed(line.substr(kErrorComment.size())), ',').value_or(0);
-    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
-    if (header)
-      add(spectra, known, header->row(split_fields(line, ',', here)));
-    else
-      header.emplace(split_fields(line, ',', here));
-  }
-  if (spectra.empty())
-    fail(here, "the table is empty: {}a row for each angle and wavelength is expected",
-         header ? "" : "a line with the names of the columns and then ");
-  Table table = assemble(spectra, header->has_errors());
-  table.error = error;
+  while (rows.next()) add(spectra, known, header.row());
+  if (spectra.empty()) fail(rows.names_where(), "the table is empty: a row for each angle and wavelength is expected");
+  Table table = assemble(spectra, header.has_errors());
+  table.error = stated_error(text);
   return table;
 }
 
 bool is_leaf_table(std::string_view text) {
   if (text.find('\0') != text.npos) return true;
-  while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
-    return std::ranges::any_of(split_fields(line, ',', {}),
-                               [](const Field& f) { return f.text == kNames[kRs] || f.text == kNames[kRd]; });
-  }
-  return true;
+  const TextTable table(text, {});
+  return table.columns() == 0 || std::ranges::any_of(table.names(), [](const TableField& f) {
+           const std::string name = lower_case(f.text);
+           return name == lower_case(kNames[kRs]) || name == lower_case(kNames[kRd]);
+         });
 }
 
 Table read_table(const std::filesystem::path& path, const Location& where) {

@@ -9,7 +9,7 @@
 
 #include "core/excerpt.h"
 #include "core/spectrum.h"
-#include "system/csv_fields.h"
+#include "system/text_table.h"
 
 namespace frond {
 namespace {
@@ -27,72 +27,71 @@ constexpr Allowed kAllowed[] = {
     {kIncidence, {0, 180}}, {kWavelength, {1, 1e6}}, {kTheta, {0, 180}}, {kF, {-1e6, 1e6}}, {kPatch, {0, 7}}};
 constexpr size_t kRequired = kError, kNumbers = kKind;
 
-using Field = CsvField;
-
-double number(const Field& field, std::string_view column) {
-  const auto value = field_number(field.text, ',');
-  if (!value || !std::isfinite(*value)) fail(field.where, "\"{}\" is no number for the column {}", field.text, column);
-  return *value;
-}
-
-/// Index of each column in a row; npos: the file lacks it.
+/// Index of each column in a row; kNone: the file lacks it.
 class Header {
  public:
-  explicit Header(const std::vector<Field>& fields) : count_(fields.size()) {
+  explicit Header(const TextTable& table) : table_(table) {
     for (size_t column = 0; column < kColumns; ++column) {
-      const auto found = std::ranges::find(fields, kNames[column], &Field::text);
-      at_[column] = found == fields.end() ? kNone : size_t(found - fields.begin());
+      const auto found = std::ranges::find_if(
+          table.names(), [column](const TableField& name) { return lower_case(name.text) == kNames[column]; });
+      at_[column] = found == table.names().end() ? kNone : size_t(found - table.names().begin());
       if (at_[column] == kNone && column < kRequired)
-        fail(fields.front().where, "there is no column \"{}\"; a goniometer table needs the columns {}", kNames[column],
+        fail(table.names_where(), "there is no column \"{}\"; a goniometer table needs the columns {}", kNames[column],
              fmt::join(std::span(kNames).first(kRequired), ", "));
     }
   }
 
-  /// Throws InputError for values out of range.
-  GoniometerRow row(const std::vector<Field>& fields) {
-    if (fields.size() != count_)
-      fail(fields.front().where, "{} fields, but the file has {} columns", fields.size(), count_);
+  /// Returns the row that the table has read. Throws InputError for values out of range.
+  GoniometerRow row() {
+    table_.check_fields();
     std::array<double, kNumbers> values{};
     for (size_t column = 0; column < kNumbers; ++column)
-      if (at_[column] != kNone) values[column] = number(fields[at_[column]], kNames[column]);
+      if (at_[column] != kNone) values[column] = number(column);
     for (const Allowed& a : kAllowed)
       if (!(values[a.column] >= a.range.min && values[a.column] <= a.range.max))
-        fail(fields[at_[a.column]].where, "{} is {}, outside its range {} to {}", kNames[a.column], values[a.column],
+        fail(table_.where(at_[a.column]), "{} is {}, outside its range {} to {}", kNames[a.column], values[a.column],
              a.range.min, a.range.max);
-    if (values[kTheta] == 90) fail(fields[at_[kTheta]].where, "theta_deg is 90, on neither side; remove the row");
+    if (values[kTheta] == 90) fail(table_.where(at_[kTheta]), "theta_deg is 90, on neither side; remove the row");
     GoniometerRow row{values[kIncidence], values[kWavelength], values[kTheta], turned(values[kPhi]),
-                      values[kF],         values[kError],      values[kPatch], fields[0].where};
-    check_kind(row, fields);
-    check_material(fields);
+                      values[kF],         values[kError],      values[kPatch], table_.where()};
+    check_kind(row);
+    check_material();
     return row;
   }
 
  private:
   static constexpr size_t kNone = size_t(-1);
 
+  std::string_view text(size_t column) const { return table_.fields()[at_[column]].text; }
+  double number(size_t column) const {
+    const auto value = table_.number(text(column));
+    if (!value || !std::isfinite(*value))
+      fail(table_.where(at_[column]), "\"{}\" is no number for the column {}", text(column), kNames[column]);
+    return *value;
+  }
   /// Into [0, 360).
   static double turned(double phi_deg) {
     const double turned = std::fmod(phi_deg, 360);
     return turned < 0 ? std::fmod(turned + 360, 360) : turned;
   }
-  void check_kind(const GoniometerRow& row, const std::vector<Field>& fields) const {
+  void check_kind(const GoniometerRow& row) const {
     if (at_[kKind] == kNone) return;
-    const auto& [kind, where] = fields[at_[kKind]];
-    const std::string_view expected = row.is_reflected() ? "BRDF" : "BTDF";
+    const std::string_view kind = text(kKind), expected = row.is_reflected() ? "BRDF" : "BTDF";
     if (kind != expected)
-      fail(where, "\"{}\", but light at {} degrees and a detector at {} degrees measure the {}", kind,
-           row.incidence_deg, row.theta_deg, expected);
+      fail(table_.where(at_[kKind]), "\"{}\", but light at {} degrees and a detector at {} degrees measure the {}",
+           kind, row.incidence_deg, row.theta_deg, expected);
   }
-  void check_material(const std::vector<Field>& fields) {
+  void check_material() {
     if (at_[kMaterial] == kNone) return;
-    const auto& [material, where] = fields[at_[kMaterial]];
-    if (material_.empty()) material_ = material;
-    if (material != material_)
+    if (material_.empty()) material_ = text(kMaterial);
+    if (text(kMaterial) != material_) {
+      const Location where = table_.where(at_[kMaterial]);
       fail(where, "the file has measurements of {} and {}; keep the rows of one", excerpt(material_, where),
-           excerpt(material, where));
+           excerpt(text(kMaterial), where));
+    }
   }
 
-  size_t count_;
+  const TextTable& table_;
   std::array<size_t, kColumns> at_{};
   std::string material_;
 };
@@ -100,22 +99,14 @@ class Header {
 }  // namespace
 
 std::vector<GoniometerRow> parse_goniometer_rows(std::string_view text, const std::string& name) {
-  Location where{std::make_shared<const std::string>(name), 0, 1};
-  std::optional<Header> header;
+  TextTable table(text, name);
   std::vector<GoniometerRow> rows;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin), content = trimmed(line);
-    ++where.line;
-    begin = end + 1;
-    if (content.empty() || content.front() == '#') continue;
-    const std::vector<Field> fields = split_fields(line, ',', where);
-    if (!header)
-      header.emplace(fields);
-    else
-      rows.push_back(header->row(fields));
+  if (table.columns() > 0) {
+    Header header(table);
+    while (table.next()) rows.push_back(header.row());
   }
-  if (rows.empty()) fail(where, "it is neither a tensor file nor a goniometer table: there are no rows of numbers");
+  if (rows.empty())
+    fail(table.names_where(), "it is neither a tensor file nor a goniometer table: there are no rows of numbers");
   return rows;
 }
 

@@ -23,10 +23,9 @@ struct GoniometerRow {
   bool is_reflected() const { return is_front_lit() == (theta_deg < 90); }
 };
 
-/// Reads a table as `frond goniophotometer` writes it: lines of comment (#), a line of column names, rows of fields
-/// separated by commas. Columns: incidence_deg, wavelength_nm, theta_deg, phi_deg, f_per_sr; optional f_se,
-/// projected_solid_angle_sr, kind (BRDF or BTDF, which is checked) and material (one for the file); others are ignored.
-/// Throws InputError with `name`, line and column.
+/// Reads a table as `frond goniophotometer` writes it, in any layout that TextTable reads. Columns: incidence_deg,
+/// wavelength_nm, theta_deg, phi_deg, f_per_sr; optional f_se, projected_solid_angle_sr, kind (BRDF or BTDF, which is
+/// checked) and material (one for the file); others are ignored. Throws InputError with `name`, line and column.
 std::vector<GoniometerRow> parse_goniometer_rows(std::string_view text, const std::string& name);
 
 }  // namespace frond

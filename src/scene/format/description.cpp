@@ -44,6 +44,10 @@ fs::path found(const SceneSettings& scene, const std::string& name, const Locati
   for (const std::string& spelling : {name, slashed})
     for (const fs::path& folder : folders)
       if (const auto path = existing(folder / spelling)) return *path;
+  // "FILE:COLUMN", a column of a table of spectra.
+  if (const size_t colon = slashed.rfind(':'); colon != slashed.npos && colon > 0)
+    for (const fs::path& folder : folders)
+      if (const auto path = existing(folder / slashed.substr(0, colon))) return path->string() + slashed.substr(colon);
   return (folders.front() / name).lexically_normal();
 }
 
