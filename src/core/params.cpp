@@ -195,6 +195,25 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
            p.name);
 }
 
+namespace {
+
+/// Warns if all numbers but 0 are probably in another unit.
+void warn_of_unit(ParamResolver& resolver, const Param& declared, std::span<const double> values,
+                  const Location& where) {
+  std::string first;
+  for (const double x : values) {
+    if (x == 0) continue;
+    const std::string hint = unit_hint(x, declared.quantity, declared.unit, declared.range);
+    if (hint.empty()) return;
+    if (first.empty())
+      first =
+          fmt::format("\"{}\" is {}{}{}: {}", declared.name, x, declared.unit.empty() ? "" : " ", declared.unit, hint);
+  }
+  if (!first.empty()) resolver.warn(where, first);
+}
+
+}  // namespace
+
 void Params::check(const Param& declared, const ParsedParam& p) const {
   const auto& [types, arity] = traits(declared.kind);
   if (std::find(types.begin(), types.end(), p.type) == types.end())
@@ -210,9 +229,11 @@ void Params::check(const Param& declared, const ParsedParam& p) const {
       if (!std::isfinite(x)) fail(p.value_where, "\"{}\" has the value {}, finite numbers are needed", p.name, x);
       if (declared.range.contains(x)) continue;
       const std::string_view space = declared.unit.empty() ? "" : " ";
-      fail(p.value_where, "\"{}\" is {}, outside its range {} to {}{}{}", p.name, x, declared.range.min,
-           declared.range.max, space, declared.unit);
+      const std::string hint = unit_hint(x, declared.quantity, declared.unit, declared.range);
+      fail(p.value_where, "\"{}\" is {}, outside its range {} to {}{}{}{}{}", p.name, x, declared.range.min,
+           declared.range.max, space, declared.unit, hint.empty() ? "" : "; ", hint);
     }
+    warn_of_unit(resolver_, declared, *v, p.value_where);
     if (declared.kind == ParamKind::integer)
       for (const double x : *v)
         if (x != std::floor(x) || std::abs(x) > std::numeric_limits<int>::max())
@@ -365,7 +386,13 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
                                                      const std::string& name, const Location& where) {
   auto texture = resolver.float_texture(name, where);
   const Interval values = texture->range(), range = declared.range;
-  if (range.contains(values.min) && range.contains(values.max)) return texture;
+  if (range.contains(values.min) && range.contains(values.max)) {
+    const std::string hint = unit_hint(values.max, declared.quantity, declared.unit, range);
+    if (texture->is_range_tight() && !hint.empty())
+      resolver.warn(where, fmt::format("texture \"{}\" has values up to {:.3g}{}{} for \"{}\": {}", name, values.max,
+                                       declared.unit.empty() ? "" : " ", declared.unit, declared.name, hint));
+    return texture;
+  }
   const std::string message = fmt::format(
       "texture \"{}\" has values from {:.3g} to {:.3g}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
       values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);

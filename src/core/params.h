@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/quantity.h"
 #include "core/spectrum.h"
 #include "core/vec.h"
 
@@ -60,6 +61,7 @@ struct Param {
   std::string_view doc;
   bool list = false;                               ///< takes any number of values instead of one
   bool required = false;                           ///< an error if the scene does not give it
+  Quantity quantity = Quantity::other;             ///< for a warning if numbers are probably in another unit
   std::span<const std::string_view> choices = {};  ///< allowed strings; empty: any string
 };
 

@@ -23,7 +23,8 @@ constexpr Param kOwn[] = {
      .range = {0, 89},
      .doc =
          "Angle of incidence whose reflectance and transmittance are used at all angles; 8 is that of an integrating "
-         "sphere."},
+         "sphere.",
+     .quantity = Quantity::angle},
     {.name = "bihemispherical",
      .kind = ParamKind::boolean,
      .default_value = false,

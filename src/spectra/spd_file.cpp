@@ -6,6 +6,7 @@
 #include <array>
 #include <system_error>
 
+#include "core/excerpt.h"
 #include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
 #include "system/text_table.h"
@@ -155,6 +156,7 @@ bool is_spectrum_file(std::string_view word, const std::filesystem::path& path) 
 
 std::vector<SpectrumPoint> read_spd_points(const std::filesystem::path& path, const Location& where) {
   const auto [file, column] = spectrum_column(path);
+  if (is_foreign(path)) mark_foreign(file);
   return parse_spd_points(read_file_bytes(file, where, "spectrum file"), file.string(), column);
 }
 

@@ -67,6 +67,20 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
   }
 }
 
+/// Warns of options whose numbers are probably all in another unit.
+void warn_of_units(const JobRun& run) {
+  for (const JobParam* p : run.args.params()) {
+    if (p->quantity == Quantity::other || !run.args.given(p->name)) continue;
+    const std::vector<double> values =
+        p->kind == ArgumentKind::numbers ? run.args.numbers(p->name) : std::vector{run.args.real(p->name)};
+    const auto hint = [p](double x) { return unit_hint(x, p->quantity, p->unit, p->range); };
+    const auto first = std::ranges::find_if(values, [](double x) { return x != 0; });
+    if (first == values.end() || std::ranges::any_of(values, [&](double x) { return x != 0 && hint(x).empty(); }))
+      continue;
+    run.log().warn({}, fmt::format("{}: {:g} {}: {}", run.args.spelled(p->name), *first, p->unit, hint(*first)));
+  }
+}
+
 }  // namespace
 
 /// --csv and --json are written after the log's check, so that strict mode does not write them on warnings.
@@ -76,6 +90,7 @@ Result run_job(const JobInfo& job, const JobRun& run) {
   const std::list<PlannedOutput> outputs = planned_outputs(run.args);
   StrictLog& log = run.context.log();
   log.begin(run.args.declares("strict") && run.args.flag("strict"));
+  warn_of_units(run);
   Result result = [&] {
     const StopScope stop(run.control.stop);
     return job.run(run);

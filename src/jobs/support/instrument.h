@@ -10,9 +10,14 @@
 /// Parameters, materials under test and progress, shared by the jobs of both instruments.
 namespace frond {
 
-inline constexpr JobParam kAnglesParam(
-    "angles", ArgumentKind::numbers, "Angles of incidence from the front's normal; above 90 the back is lit.",
-    {.default_value = "8", .unit = "degrees", .range = {0, 180}, .aliases = "angle", .decides = true});
+inline constexpr JobParam kAnglesParam("angles", ArgumentKind::numbers,
+                                       "Angles of incidence from the front's normal; above 90 the back is lit.",
+                                       {.default_value = "8",
+                                        .unit = "degrees",
+                                        .range = {0, 180},
+                                        .aliases = "angle",
+                                        .decides = true,
+                                        .quantity = Quantity::angle});
 inline constexpr JobParam kInstrumentWavelengthsParam(
     "wavelengths", ArgumentKind::numbers, "Wavelengths, as in 450,550,670 or 400:700:10.",
     {.unit = "nm", .range = {360, 2500}, .aliases = "wavelength", .decides = true, .required = true});

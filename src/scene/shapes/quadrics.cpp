@@ -313,7 +313,8 @@ constexpr Param kPhiMax{.name = "phimax",
                         .default_value = 360.0,
                         .unit = "degrees",
                         .range = {1e-3, 360},
-                        .doc = "Sweep angle."};
+                        .doc = "Sweep angle.",
+                        .quantity = Quantity::sweep};
 constexpr Interval kRadius{0, 1e30};
 constexpr Param kSphere[] = {
     {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kRadius, .doc = "Radius."},

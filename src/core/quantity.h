@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/spectrum.h"
+
+namespace frond {
+
+/// What a number measures, where it is often given in another unit than the parameter's.
+enum class Quantity : uint8_t {
+  other,           ///< values in its range say nothing about their unit
+  angle,           ///< degrees
+  sweep,           ///< degrees, up to a turn
+  air_pressure,    ///< Pa
+  water_vapour,    ///< precipitable water, cm
+  ozone,           ///< atm-cm
+  soil_moisture,   ///< percent of the volume
+  leaf_thickness,  ///< m
+  chlorophyll,     ///< kg/m^3
+  carotenoids,     ///< kg/m^3
+  anthocyanins,    ///< kg/m^3
+  dry_matter,      ///< kg/m^3, all of it or a constituent
+  brown_pigments,  ///< 1/m
+  absorption,      ///< of a leaf's tissue, 1/m
+};
+
+/// Returns what a number is if it is not in the parameter's unit but in another that is in use, as "if it is in hPa,
+/// write 101325"; "" if nothing suggests that. 0 suggests nothing, and neither do whole degrees. Numbers outside the
+/// range are also tried as percent of a share and as micrometres instead of nm.
+std::string unit_hint(double value, Quantity quantity, std::string_view unit, const Interval& range);
+
+}  // namespace frond
