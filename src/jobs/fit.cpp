@@ -1,5 +1,7 @@
 #include "leaf/fit/fit.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -51,8 +53,9 @@ constexpr JobParam kParams[] = {
              "Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction "
              "between it and leaf_solved with the fitted parameters.",
              {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "all-leaves"}),
-    JobParam("angle", real, "Angle of incidence, if the file does not state it.",
-             {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true}),
+    JobParam(
+        "angle", real, "Angle of incidence, if the file does not state it.",
+        {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true, .quantity = Quantity::angle}),
     JobParam("structure", text, "Structure of the leaf; by default the better fit.",
              {.choices = kStructures, .decides = true}),
     JobParam("sieve", text, "Absorption with sieve and detour effects; by default the better fit.",
@@ -178,13 +181,18 @@ void check_values(const Arguments& args, const leaf::FitRequest& request, const 
          args.spelled("like"));
 }
 
-/// Throws InputError for a value that the material would refuse.
-void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const MaterialInfo& material,
-                 const std::string& option) {
-  for (const auto& [name, value, per_area] : fixed)
-    if (const Param* p = find_param(material, name); p && !per_area && !p->range.contains(value))
-      fail({}, "{} {}: {:g} is outside its range {:g} to {:g} {}", option, name, value, p->range.min, p->range.max,
-           p->unit);
+/// Throws InputError for a value that the material would refuse; warns of one that is probably in another unit.
+void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const MaterialInfo& material, const JobRun& run) {
+  const std::string option = run.args.spelled("fix");
+  for (const auto& [name, value, per_area] : fixed) {
+    const Param* p = find_param(material, name);
+    if (!p || per_area) continue;
+    const std::string hint = unit_hint(value, p->quantity, p->unit, p->range);
+    if (!p->range.contains(value))
+      fail({}, "{} {}: {:g} is outside its range {:g} to {:g} {}{}{}", option, name, value, p->range.min, p->range.max,
+           p->unit, hint.empty() ? "" : "; ", hint);
+    if (!hint.empty()) run.log().warn({}, fmt::format("{} {}: {:g} {}: {}", option, name, value, p->unit, hint));
+  }
 }
 
 /// Throws InputError if contents per area that were given lead to a leaf that the material would refuse.
@@ -205,6 +213,11 @@ Location location_of(const std::string& file) { return {std::make_shared<const s
 /// Warns of what the reader has changed: it changes the numbers, so -q shows it too. `name`: of the leaf, or empty.
 void warn_of_changes(const JobRun& run, const leaf::MeasuredSpectra& measured, const std::string& name) {
   const std::string of = name.empty() ? "" : name + ": ";
+  if (measured.derived)
+    run.log().info(fmt::format("{}{} = 1 - {} - A: it follows from the column of absorptances", of, measured.derived,
+                               measured.derived == 'T' ? 'R' : 'T'));
+  if (!measured.unused.empty())
+    run.log().info(fmt::format("{}columns that are not used: {}", of, fmt::join(measured.unused, ", ")));
   if (!measured.in_percent.empty())
     run.log().warn({},
                    fmt::format("{}the values of {} are in percent: they are divided by 100", of, measured.in_percent));
@@ -230,7 +243,7 @@ Result fit_one(const JobRun& run) {
   request.measurements = std::move(measured.measurements);
   check_values(args, request, file.empty() ? Location{} : location_of(file));
   const MaterialInfo& material = run.session().registry().materials.get(args.text("material"), {});
-  check_fixed(request.fixed, material, args.spelled("fix"));
+  check_fixed(request.fixed, material, run);
   const double start = cpu_seconds();
   const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
   check_fitted(fitted.params, material, args.spelled("fix"));
@@ -274,6 +287,8 @@ void read_leaves(const JobRun& run, const std::string& file, bool keeps_errors, 
   for (leaf::MeasuredLeaf& one : read) {
     if (changes.in_percent.empty()) changes.in_percent = one.spectra.in_percent;
     changes.left_out += one.spectra.left_out;
+    changes.derived = std::max(changes.derived, one.spectra.derived);
+    changes.unused = one.spectra.unused;
     LeafFitReport& leaf = leaves.emplace_back(LeafFitReport{name, one.name.empty() ? stem : one.name, one.error});
     leaf.measurements = one.spectra.measurements.size();
     leaf.request.measurements = std::move(one.spectra.measurements);
@@ -305,7 +320,7 @@ Result fit_all(const JobRun& run) {
   // Errors in the options end the job before any file is read; errors of one leaf do not.
   const leaf::FitRequest request = request_of(args);
   const MaterialInfo& material = run.session().registry().materials.get(args.text("material"), {});
-  check_fixed(request.fixed, material, args.spelled("fix"));
+  check_fixed(request.fixed, material, run);
   const std::vector<std::string> files = args.given("file") ? args.texts("file") : std::vector<std::string>{""};
   std::vector<LeafFitReport> leaves;
   for (const std::string& file : files) read_leaves(run, file, files.size() > 1, leaves);

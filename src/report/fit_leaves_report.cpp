@@ -57,7 +57,9 @@ void add_contents(const LeafFitReport& leaf, Table& table) {
 
 void document(Table& table) {
   table.document("status", "fitted, or why the leaf was not fitted");
-  table.document("rmse", "root mean square error of R and T together; rmse_R, rmse_T: of one of them");
+  table.document(
+      "rmse",
+      "root mean square error of R and T together; rmse_R, rmse_T: of one of them, blank if it was not measured");
   table.document("misfits", "number of bands in which R or T is off by more than 0.01");
   table.document("thickness",
                  "m; concentrations in kg/m^3, otherabsorption and brownpigments in 1/m; columns ending in _se: "
@@ -91,8 +93,8 @@ Table leaves_table(const std::vector<LeafFitReport>& leaves, leaf::AbsorptionTab
     table.add("status", is_fitted ? "fitted" : leaf.error);
     table.add("measurements", double(leaf.measurements));
     table.add("rmse", is_fitted ? r.rmse : kNone);
-    table.add("rmse_R", is_fitted ? r.rmse_r : kNone);
-    table.add("rmse_T", is_fitted ? r.rmse_t : kNone);
+    table.add("rmse_R", is_fitted ? r.rmse_r.value_or(kNone) : kNone);
+    table.add("rmse_T", is_fitted ? r.rmse_t.value_or(kNone) : kNone);
     table.add("misfits", is_fitted ? double(r.misfits.size()) : kNone);
     const bool is_bifacial = r.params.structure == leaf::Structure::bifacial;
     table.add("specimen", is_fitted ? std::string(r.specimen->name) : "");

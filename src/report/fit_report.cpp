@@ -110,6 +110,14 @@ std::string misfit_text(const FitReport& report) {
   return text;
 }
 
+/// Returns the errors as text: "RMSE 0.0059 (R 0.0056, T 0.0061)", without what was not measured.
+std::string rmse_text(const leaf::FitResult& result) {
+  std::vector<std::string> parts;
+  if (result.rmse_r) parts.push_back(fmt::format("R {:.4f}", *result.rmse_r));
+  if (result.rmse_t) parts.push_back(fmt::format("T {:.4f}", *result.rmse_t));
+  return fmt::format("RMSE {:.4f} ({})", result.rmse, fmt::join(parts, ", "));
+}
+
 /// Returns the estimates in the order of the correlations.
 std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
   std::vector<const FittedNumber*> free;
@@ -122,8 +130,7 @@ std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
 
 std::string fit_scene(const FitReport& report, const std::string& name) {
   const leaf::FitResult& result = report.result;
-  std::string text = fmt::format("# Fitted to {} by frond fit: RMSE {:.4f} (R {:.4f}, T {:.4f}).\n", report.source,
-                                 result.rmse, result.rmse_r, result.rmse_t);
+  std::string text = fmt::format("# Fitted to {} by frond fit: {}.\n", report.source, rmse_text(result));
   if (const auto names = not_told(report); !names.empty())
     text += fmt::format("# Not determined by the data, so no measurement: {}.\n", fmt::join(names, ", "));
   text += name.empty() ? fmt::format("Material \"{}\"", report.material)
@@ -147,8 +154,8 @@ std::string fit_words(const FitReport& report, const std::string& material) {
 
 std::string fit_text(const FitReport& report) {
   const leaf::FitResult& result = report.result;
-  std::string text = fmt::format("{}: {} measurements, RMSE {:.4f} (R {:.4f}, T {:.4f})\n", report.source,
-                                 report.request.measurements.size(), result.rmse, result.rmse_r, result.rmse_t);
+  std::string text =
+      fmt::format("{}: {} measurements, {}\n", report.source, report.request.measurements.size(), rmse_text(result));
   for (const NamedBand& band : kBands)
     if (const auto rmse = leaf::rmse_between(report.request, result, band.nm))
       text += fmt::format("  {:<20} {:4.0f} to {:4.0f} nm   RMSE {:.4f}\n", band.name, band.nm.min, band.nm.max, *rmse);
@@ -186,12 +193,13 @@ std::string fit_text(const FitReport& report) {
 }
 
 std::vector<Fact> fit_facts(const FitReport& report) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const leaf::FitResult& r = report.result;
   return {{"source", report.source},
           {"measurements", double(report.request.measurements.size())},
           {"rmse", r.rmse},
-          {"rmse_R", r.rmse_r},
-          {"rmse_T", r.rmse_t},
+          {"rmse_R", r.rmse_r.value_or(kNone)},
+          {"rmse_T", r.rmse_t.value_or(kNone)},
           {"specimen", std::string(r.specimen->name)},
           {"structure", std::string(r.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial")},
           {"sieve", r.params.sieve_and_detour},

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kSpectrum =
     "# a leaf\nnm,R,T\n450,0.045,0.016\n550,0.08,0.15\n650,0.05,0.05\n680,0.045,0.02\n"
@@ -47,6 +48,28 @@ TEST_F(Fitting, WritesALeafThatAScenesReaderTakes) {
               "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nInclude \"leaf.pbrt\"\nShape \"disk\"\n")
           .string();
   EXPECT_EQ(frond_command({"check", "--strict", scene}).code, 0);
+}
+
+TEST_F(Fitting, NamesWhatItDerivesAndWhatItDoesNotUse) {
+  std::string with_a = "nm,R,A,comment\n";
+  for (const auto& row : parse_csv(kSpectrum).rows)
+    with_a += fmt::format("{},{},{},x\n", row[0], row[1], 1 - std::stod(row[1]) - std::stod(row[2]));
+  const auto fitted = [this](const std::string& csv) {
+    const std::string json = name_of("fit.json");
+    const auto done = frond_command({"fit", csv, "--json", json, "--structure", "bifacial", "--sieve", "off"});
+    EXPECT_EQ(done.code, 0) << done.err;
+    return std::pair(done.out + done.err, nlohmann::json::parse(bytes_of(json)));
+  };
+  const auto [text, json] = fitted(folder_.write("a.csv", with_a).string());
+  EXPECT_THAT(text, AllOf(HasSubstr("T = 1 - R - A"), HasSubstr("columns that are not used: comment")));
+  const double wanted = fitted(spectrum_).second["rmse_T"];
+  EXPECT_NEAR(double(json["rmse_T"]), wanted, 1e-6);
+  std::string only_r = "nm,R\n";
+  for (const auto& row : parse_csv(kSpectrum).rows) only_r += row[0] + "," + row[1] + "\n";
+  const auto [r_text, r_json] = fitted(folder_.write("r.csv", only_r + "2300,.11\n2400,.08\n").string());
+  EXPECT_THAT(r_text, Not(HasSubstr(", T 0")));
+  EXPECT_TRUE(r_json["rmse_T"].is_null());
+  EXPECT_TRUE(r_json["rmse_R"].is_number());
 }
 
 // The leaf that was measured is the one that is fitted, from its R and T, so that little remains by direction.

@@ -332,6 +332,31 @@ TEST(MeasuredSpectra, AreReadAsInstrumentsWriteThem) {
   EXPECT_EQ(elm.measurements[0].theta_deg, 172);
 }
 
+TEST(MeasuredSpectra, AbsorptanceGivesTheOtherShare) {
+  const auto read = [](std::string_view text) { return parse_measured_spectra(text, "a.csv", {}); };
+  const MeasuredSpectra with_r = read("nm,R,A\n550,.25,.5\n560,.25,.7505\n570,,.5\n580,.25,\n");
+  EXPECT_EQ(with_r.derived, 'T');
+  ASSERT_EQ(with_r.measurements.size(), 3u);
+  EXPECT_EQ(with_r.measurements[0].t, 0.25);
+  EXPECT_NEAR(*with_r.measurements[1].t, -0.0005, 1e-12);
+  EXPECT_FALSE(with_r.measurements[2].t);
+  EXPECT_EQ(with_r.left_out, 1u);
+  const MeasuredSpectra with_t = read("Wavelength;T (%);Absorptance (%)\n550;20;50,5\n");
+  EXPECT_EQ(with_t.derived, 'R');
+  EXPECT_EQ(with_t.in_percent, "T and A");
+  EXPECT_NEAR(*with_t.measurements[0].r, 0.295, 1e-12);
+  EXPECT_EQ(read("nm,R,A\n550,4,95\n560,5,94\n").in_percent, "R and A");
+  const MeasuredSpectra all = read("nm,R,T,A,Rs,comment\n550,.25,.2,.9,0,x\n");
+  EXPECT_EQ(all.derived, 0);
+  EXPECT_EQ(all.measurements[0].t, 0.2);
+  EXPECT_THAT(all.unused, testing::ElementsAre("A", "Rs", "comment"));
+  const auto error = [&](std::string_view text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(error("nm,A\n550,.5\n"), HasSubstr("neither a column of reflectances"));
+  EXPECT_THAT(error("nm,R,A\n550,.5,.7\n"), AllOf(HasSubstr("a.csv:2:5"), HasSubstr("R + A is 1.2")));
+  EXPECT_THAT(error("nm,R,A\n500,.1,.5\n510,.1,1.3\n520,.1,.5\n"), AllOf(HasSubstr("a.csv:3:8"), HasSubstr("A is a")));
+  EXPECT_THAT(error("nm,R,A\n500,30,.5\n510,30,.4\n"), HasSubstr("R looks like percent and A like fractions"));
+}
+
 TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
   const auto error = [](std::string_view text, const SpectraMeasurement& how = {}) {
     return error_of([&] { parse_measured_spectra(text, "a.csv", how); });
@@ -353,6 +378,15 @@ TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(error("nm,R,T\n500,.3,.1\n510,.3,5\n520,.3,.1\n"), AllOf(HasSubstr("a.csv:3:8"), HasSubstr("\"5\"")));
   EXPECT_THAT(error("nm,R\n500,30\n510,120\n520,30\n"), AllOf(HasSubstr("a.csv:3:5"), HasSubstr("\"120\"")));
   EXPECT_THAT(error("nm,R\n500,inf\n"), HasSubstr("a.csv:2:5"));
+}
+
+TEST(Fit, WhatIsNotMeasuredHasNoError) {
+  FitRequest request{.measurements = spectra_of(find_specimen("soybean")->params, {8}, 100)};
+  for (LeafMeasurement& m : request.measurements) m.t.reset();
+  const FitResult result = fit_leaf(request, ThreadPool(1));
+  EXPECT_FALSE(result.rmse_t);
+  ASSERT_TRUE(result.rmse_r);
+  EXPECT_EQ(*result.rmse_r, result.rmse);
 }
 
 TEST(MeasuredLeaves, AreReadInOrderWithTheErrorsOfEach) {

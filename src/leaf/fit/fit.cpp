@@ -56,7 +56,8 @@ void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& foun
     fitted.is_outlier = (measurement.r && std::abs(fitted.r - *measurement.r) > Huber::kFar) ||
                         (measurement.t && std::abs(fitted.t - *measurement.t) > Huber::kFar);
   }
-  result.rmse_r = root_mean_square(r), result.rmse_t = root_mean_square(t);
+  if (!r.empty()) result.rmse_r = root_mean_square(r);
+  if (!t.empty()) result.rmse_t = root_mean_square(t);
   const double rho = (static_cast<double>(r.size()) * neighbours(r) + static_cast<double>(t.size()) * neighbours(t)) /
                      static_cast<double>(r.size() + t.size());
   r.insert(r.end(), t.begin(), t.end());

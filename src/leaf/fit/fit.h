@@ -124,10 +124,11 @@ struct FitResult {
     double r, t;
     bool is_outlier;  ///< its residual is too large for the others' spread: it has less weight
   };
-  std::vector<FittedContent> contents;      ///< per leaf area: chlorophyll, carotenoids, ..., water, drymatter
-  std::vector<MisfitBand> misfits;          ///< see misfit_bands
-  std::vector<Fitted> fitted;               ///< [measurement], solved with the fitted parameters
-  double rmse = 0, rmse_r = 0, rmse_t = 0;  ///< root mean square of the residuals: all, R alone, T alone
+  std::vector<FittedContent> contents;   ///< per leaf area: chlorophyll, carotenoids, ..., water, drymatter
+  std::vector<MisfitBand> misfits;       ///< see misfit_bands
+  std::vector<Fitted> fitted;            ///< [measurement], solved with the fitted parameters
+  double rmse = 0;                       ///< root mean square of the residuals
+  std::optional<double> rmse_r, rmse_t;  ///< of R alone and of T alone; nullopt: none was measured
 };
 
 /// Root mean square of the residuals at wavelengths within `nm`, R and T together; none if there are no measurements.
