@@ -29,7 +29,7 @@ TEST(ParserErrors, NameWhatIsNotText) {
       {std::string("WorldBegin\n ab\0c", 16), "s:2:4: a zero byte: this is not a text file"},
       {"\x1f\x8b\x08...", "s:1:1: s is compressed and damaged: unknown header flags set"},
       {std::string("\xff\xfe") + "W", "s:1:1: this file is UTF-16 text; scene files are UTF-8"},
-      {"\x7f\x80", "s:1:1: unknown directive ?\x80"},
+      {"\x7f\x80", "s:1:1: unknown directive \\x7f\x80"},
   });
 }
 
