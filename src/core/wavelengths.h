@@ -37,6 +37,7 @@ struct ResponsePoint {
 struct Band {
   double nm;                                 ///< wavelength, or centroid of the response
   std::vector<ResponsePoint> response = {};  ///< linear between the points, 0 beyond; empty: the single wavelength
+  std::string name = {};                     ///< of a band with a response, unique in its strategy; else empty
 };
 
 /// Wavelength strategy: samples the wavelengths of a path and converts its radiance to values of film channels.
@@ -64,7 +65,8 @@ class WavelengthStrategy {
   virtual std::string_view film_space() const = 0;
   /// Luminance weights of the lanes if these are red, green and blue, one for each lane; else empty.
   virtual std::span<const float> luminance_shares() const { return {}; }
-  /// The film's channels in order if they are spectral bands; empty if they are colours.
+  /// The film's channels if they are spectral bands, in the order in which the user named them; empty if they are
+  /// colours.
   virtual std::span<const Band> bands() const { return {}; }
 };
 

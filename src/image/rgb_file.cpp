@@ -67,10 +67,15 @@ bool is_near(const Chromaticity& a, const Chromaticity& b) {
 void check_colors(const std::string& path, const Image& image) {
   const auto bands = bands_of(image);
   if (bands.empty() || image.channel(kRgb[0])) return;
+  const bool are_named = std::ranges::none_of(
+      image.channels, [](const std::string& name) { return wavelength_of_channel(name).has_value(); });
   fail({},
-       "{} holds bands from {} to {} nm and no colours; frond convert --bands {},{},{} shows three of them, and frond "
-       "compare --wavelengths bands,... reports errors band by band",
-       path, bands.front(), bands.back(), bands.back(), bands[bands.size() / 2], bands.front());
+       "{} holds bands {} and no colours; frond convert --bands {},{},{} shows three of them, and frond compare "
+       "--wavelengths bands,... reports errors band by band",
+       path,
+       are_named ? fmt::format("{}", fmt::join(bands, ", "))
+                 : fmt::format("from {} to {} nm", bands.front(), bands.back()),
+       bands.back(), bands[bands.size() / 2], bands.front());
 }
 
 /// Linear name of the colour space that a file states, by name or by chromaticities; empty if it states none. Throws

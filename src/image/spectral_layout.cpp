@@ -31,52 +31,72 @@ std::string sensitivity_text(std::span<const ResponsePoint> response) {
   return text;
 }
 
-/// Channel of radiance: its wavelength and its index in the image.
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+/// Channel of radiance: its wavelength or the name of its band, and its index in the image.
 struct SpectralChannel {
-  double nm;
+  std::optional<double> nm;
+  std::string name;
   size_t index;
 };
-/// Returns an image's channels of radiance in ascending order of wavelength.
+/// Returns an image's channels of radiance: wavelengths, ascending, before names.
 std::vector<SpectralChannel> spectral_channels(const Image& image) {
   std::vector<SpectralChannel> channels;
-  for (size_t i = 0; i < image.channels.size(); ++i)
-    if (const auto nm = wavelength_of_channel(image.channels[i])) channels.push_back({*nm, i});
-  std::ranges::sort(channels, {}, &SpectralChannel::nm);
+  for (size_t i = 0; i < image.channels.size(); ++i) {
+    const std::string& name = image.channels[i];
+    if (const auto nm = wavelength_of_channel(name))
+      channels.push_back({nm, fmt::format("{:g}", *nm), i});
+    else if (name.starts_with(kPrefix) && name.size() > kPrefix.size())
+      channels.push_back({{}, name.substr(kPrefix.size()), i});
+  }
+  std::ranges::stable_sort(channels, {}, [](const SpectralChannel& c) { return c.nm.value_or(INFINITY); });
   return channels;
 }
 
-std::vector<double> wavelengths_of(const std::vector<SpectralChannel>& channels) {
-  std::vector<double> nm;
-  for (const SpectralChannel& c : channels) nm.push_back(c.nm);
-  return nm;
+std::vector<std::string> names_of(const std::vector<SpectralChannel>& channels) {
+  std::vector<std::string> names;
+  for (const SpectralChannel& c : channels) names.push_back(c.name);
+  return names;
 }
 
-size_t nearest_channel(const std::vector<SpectralChannel>& channels, double nm, const std::string& path) {
+size_t channel_of(const std::string& band, const std::vector<SpectralChannel>& channels, const std::string& path) {
   constexpr double kFarthest_nm = 10;
-  const auto distance = [nm](const SpectralChannel& c) { return std::abs(c.nm - nm); };
+  const auto named = std::ranges::find(channels, band, &SpectralChannel::name);
+  if (named != channels.end()) return named->index;
+  const auto nm = number_of(band);
+  if (!nm) fail({}, "{} has no band \"{}\"; its bands are {}", path, band, fmt::join(names_of(channels), ", "));
+  const auto distance = [nm](const SpectralChannel& c) { return std::abs(c.nm.value_or(INFINITY) - *nm); };
   const auto nearest = std::ranges::min_element(channels, {}, distance);
   if (distance(*nearest) <= kFarthest_nm) return nearest->index;
-  fail({}, "{} has no band within {} nm of {} nm; its bands are at {} nm", path, kFarthest_nm, nm,
-       fmt::join(wavelengths_of(channels), ", "));
+  fail({}, "{} has no band within {} nm of {} nm; its bands are at {}{}", path, kFarthest_nm, band,
+       fmt::join(names_of(channels), ", "), channels.front().nm ? " nm" : "");
 }
 
 }  // namespace
 
 std::string spectral_channel(double nm) { return std::string(kPrefix) + wavelength_text(nm); }
 
-std::string variance_channel(double nm) { return "variance." + wavelength_text(nm); }
+std::string spectral_channel(const Band& band) {
+  return band.name.empty() ? spectral_channel(band.nm) : std::string(kPrefix) + band.name;
+}
+
+std::string variance_channel(const Band& band) {
+  return "variance." + (band.name.empty() ? wavelength_text(band.nm) : band.name);
+}
 
 std::optional<double> wavelength_of_channel(const std::string& name) {
   if (!name.starts_with(kPrefix) || !name.ends_with(kUnit)) return {};
   std::string number = name.substr(kPrefix.size(), name.size() - kPrefix.size() - kUnit.size());
   std::ranges::replace(number, ',', '.');
-  double nm = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), nm);
-  if (error != std::errc() || end != number.data() + number.size()) return {};
-  return nm;
+  return number_of(number);
 }
 
-std::vector<double> bands_of(const Image& image) { return wavelengths_of(spectral_channels(image)); }
+std::vector<std::string> bands_of(const Image& image) { return names_of(spectral_channels(image)); }
 
 std::string preview_space(std::span<const Band> bands) {
   return xyz_of_bands(bands).empty() ? std::string() : std::string(find_color_space("srgb")->linear_name);
@@ -85,17 +105,17 @@ std::string preview_space(std::span<const Band> bands) {
 std::map<std::string, std::string> spectral_attributes(std::span<const Band> bands) {
   std::map<std::string, std::string> text{{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "W.m^-2.sr^-1"}};
   for (const Band& band : bands)
-    if (!band.response.empty()) text[spectral_channel(band.nm)] = sensitivity_text(band.response);
+    if (!band.response.empty()) text[spectral_channel(band)] = sensitivity_text(band.response);
   return text;
 }
 
-Image false_color_image(const ImageFile& file, const std::string& path, std::span<const double> nm) {
+Image false_color_image(const ImageFile& file, const std::string& path, std::span<const std::string> bands) {
   const auto channels = spectral_channels(file.image);
   if (channels.empty()) fail({}, "{} has no bands: frond render --wavelengths bands makes images that do", path);
   const auto per_radiance = float(photometric(ConstantSpectrum(1)));
-  std::array<size_t, 3> nearest{};
-  for (size_t c = 0; c < 3; ++c) nearest[c] = nearest_channel(channels, nm[c], path);
-  Image image = file.image.selected(nearest, {"R", "G", "B"});
+  std::array<size_t, 3> chosen{};
+  for (size_t c = 0; c < 3; ++c) chosen[c] = channel_of(bands[c], channels, path);
+  Image image = file.image.selected(chosen, {"R", "G", "B"});
   for (float& v : image.pixels) v *= per_radiance;
   return image;
 }

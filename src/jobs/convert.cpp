@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "image/not_finite.h"
 #include "image/rgb_file.h"
@@ -19,10 +20,10 @@ constexpr JobParam kParams[] = {
     files_param("images", "EXR files of one size and colour space."),
     output_param("Image to write: .png, .jpg or .exr; it has the channels R, G and B.", true),
     JobParam(
-        "bands", numbers,
-        "Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy "
-        "light is 1.",
-        {.type = "R,G,B", .unit = "nm", .range = kAboveZero, .values = 3}),
+        "bands", text,
+        "The three bands to display as red, green and blue, by wavelength in nm or by name, such as 850,650,550 or "
+        "nir,red,green; white in equal-energy light is 1.",
+        {.type = "R,G,B"}),
     JobParam("exposure", text,
              "Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid "
              "grey (docs/color.md).",
@@ -42,14 +43,26 @@ std::string space_of(const Arguments& args) {
   return std::string(color_space(name, {}).linear_name);
 }
 
+/// Returns --bands. Throws InputError unless there are three.
+std::vector<std::string> bands_of(const Arguments& args) {
+  std::vector<std::string> bands;
+  std::istringstream words(args.text("bands"));
+  for (std::string word; std::getline(words, word, ',');) bands.push_back(word);
+  if (bands.size() != 3)
+    fail({}, "{} takes three bands, as in 850,650,550 or nir,red,green; {} were given", args.spelled("bands"),
+         bands.size());
+  return bands;
+}
+
 /// Reads an image in linear RGB: its own colours, or three of its bands.
 LinearFile read_colors(const std::string& path, const JobRun& run) {
   constexpr const char* kDefault = "linear sRGB";
   if (run.args.given("bands")) {
+    const std::vector<std::string> bands = bands_of(run.args);
     ImageFile file = read_image(path, {});
     return {.path = path,
             .space = kDefault,
-            .image = false_color_image(file, path, run.args.numbers("bands")),
+            .image = false_color_image(file, path, bands),
             .leaf = {},
             .seed = {},
             .left_out = std::move(file.left_out)};

@@ -46,6 +46,7 @@ class ScaledSpectrum final : public Spectrum {
   SampledSpectrum sample(const SampledWavelengths& lambda) const override { return scale_ * base_->sample(lambda); }
   Interval range_nm() const override { return base_->range_nm(); }
   float max_value() const override { return scale_ * base_->max_value(); }
+  const Spectrum& base() const { return *base_; }
 
  private:
   SpectrumPtr base_;

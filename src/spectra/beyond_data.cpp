@@ -19,6 +19,7 @@ class BeyondData final : public Spectrum {
   }
   Interval range_nm() const override { return range_nm_; }
   float max_value() const override { return base_->max_value(); }
+  const Spectrum& base() const { return *base_; }
 
  private:
   SpectrumPtr base_;
@@ -32,6 +33,11 @@ SpectrumPtr beyond_data(SpectrumPtr s, Beyond beyond, Interval range_nm) {
   const Interval nm = s->range_nm();
   if (nm.min <= range_nm.min && nm.max >= range_nm.max) return s;
   return std::make_shared<BeyondData>(std::move(s), beyond, range_nm);
+}
+
+const Spectrum* base_of_extended(const Spectrum& s) {
+  const auto* extended = dynamic_cast<const BeyondData*>(&s);
+  return extended ? &extended->base() : nullptr;
 }
 
 }  // namespace frond

@@ -14,4 +14,7 @@ enum class Beyond : uint8_t {
 /// spectrum itself if its data cover the range.
 SpectrumPtr beyond_data(SpectrumPtr s, Beyond beyond, Interval range_nm);
 
+/// Returns the spectrum that beyond_data has extended; nullptr for any other spectrum.
+const Spectrum* base_of_extended(const Spectrum& s);
+
 }  // namespace frond

@@ -29,6 +29,8 @@ class TabulatedSpectrum final : public Spectrum {
   float at(float lambda_nm) const override;
   Interval range_nm() const override { return {double(lambda_nm_.front()), double(lambda_nm_.back())}; }
   float max_value() const override;
+  /// Wavelengths of the points.
+  std::span<const float> lambda_nm() const { return lambda_nm_; }
 
  private:
   std::vector<float> lambda_nm_, values_;

@@ -90,9 +90,9 @@ TEST_F(BandCommands, TakeASensorsResponsesAndWriteThem) {
   const Outcome o = render("bands,responses=" + path("nir.spd"), "a.exr", {"--spp", "64"});
   ASSERT_EQ(o.code, 0) << o.err;
   const ImageFile file = read_image(path("a.exr"), {});
-  const auto channel = file.image.channel(spectral_channel(900));
+  const auto channel = file.image.channel("S0.nir");
   ASSERT_TRUE(channel) << ::testing::PrintToString(file.image.channels);
-  EXPECT_EQ(file.header.text.at(spectral_channel(900)), "840nm:0;850nm:1;950nm:1;960nm:0;");
+  EXPECT_EQ(file.header.text.at("S0.nir"), "840nm:0;850nm:1;950nm:1;960nm:0;");
   // The mean of the reflectance, linear from 0.38 at 840 nm to 0.5 at 900, under the trapezium: by Simpson's rule
   // 0.4845.
   double sum = 0, area = 0;
@@ -101,7 +101,7 @@ TEST_F(BandCommands, TakeASensorsResponsesAndWriteThem) {
     sum += s * std::min(0.1 + (nm - 700) * 0.002, 0.5), area += s;
   }
   double mean = 0, error = 0;
-  const auto variance = file.image.channel("variance.900,000000nm").value();
+  const auto variance = file.image.channel("variance.nir").value();
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 6; ++x)
       mean += double(file.image.at(x, y, *channel)), error += double(file.image.at(x, y, variance));
@@ -114,7 +114,56 @@ TEST_F(BandCommands, WriteTheResponsesPointByPoint) {
   const Outcome o = render("bands,responses=" + path("narrow.spd"), "a.exr");
   ASSERT_EQ(o.code, 0) << o.err;
   const ImageFile file = read_image(path("a.exr"), {});
-  EXPECT_EQ(file.header.text.at(spectral_channel(840.25)), "839.25nm:0;840.25nm:0.125;841.25nm:0;");
+  EXPECT_EQ(file.header.text.at("S0.narrow"), "839.25nm:0;840.25nm:0.125;841.25nm:0;");
+}
+
+/// Of one mean wavelength.
+TEST_F(BandCommands, HaveNamesInImagesPartsAndConversions) {
+  folder_.write("par.spd", "400 1  700 1");
+  folder_.write("green.spd", "540 1  560 1");
+  const std::string bands =
+      "bands,responses=" + path("par.spd") + "," + path("green.spd") + "," + path("nir.spd") + ",names=PAR,G,nir";
+  ASSERT_EQ(render(bands, "whole.exr").code, 0);
+  ASSERT_EQ(frond_command(
+                {"render", path("scene.pbrt"), "--no-cache", "-q", "--part", path("a.part"), "--wavelengths", bands})
+                .code,
+            0);
+  ASSERT_EQ(frond_command({"merge", path("a.part"), "-o", path("merged.exr"), "-q"}).code, 0);
+  const ImageFile file = read_image(path("whole.exr"), {}), merged = read_image(path("merged.exr"), {});
+  EXPECT_THAT(bands_of(file.image), ::testing::ElementsAre("G", "PAR", "nir"));  // EXR sorts channels
+  EXPECT_EQ(merged.image.channels, file.image.channels);
+  EXPECT_EQ(merged.image.pixels, file.image.pixels);
+  EXPECT_EQ(merged.header.text.at("S0.G"), "540nm:1;560nm:1;");
+  const auto value = [&](const char* name) { return double(file.image.at(0, 0, file.image.channel(name).value())); };
+  EXPECT_NEAR(value("S0.PAR") / white(), 0.1, 1e-4);
+  EXPECT_NEAR(value("S0.G") / white(), 0.1, 1e-4);
+  EXPECT_GT(value("S0.nir") / white(), 0.3);
+  const auto convert = [&](const std::string& chosen) {
+    return frond_command({"convert", path("whole.exr"), "--bands", chosen, "-o", path("shown.exr"), "-q"});
+  };
+  ASSERT_EQ(convert("nir,PAR,G").code, 0);
+  const ImageFile shown = read_image(path("shown.exr"), {});
+  EXPECT_GT(shown.image.at(0, 0, shown.image.channel("R").value()), 0.3f);
+  EXPECT_NEAR(shown.image.at(0, 0, shown.image.channel("B").value()), 0.1f, 1e-4);
+  EXPECT_THAT(convert("nir,PAR,red").err, HasSubstr("has no band \"red\"; its bands are G, PAR, nir"));
+  EXPECT_THAT(convert("nir,PAR").err, HasSubstr("takes three bands, as in 850,650,550 or nir,red,green; 2 were given"));
+  EXPECT_THAT(convert("nir,550,G").err, HasSubstr("no band within 10 nm of 550 nm; its bands are at G, PAR, nir"));
+  EXPECT_THAT(frond_command({"convert", path("whole.exr"), "-o", path("b.png")}).err,
+              HasSubstr("holds bands G, PAR, nir and no colours; frond convert --bands nir,PAR,G"));
+}
+
+/// The order in which wavelengths are named changes no value.
+TEST_F(BandCommands, MayBeNamedInAnyOrder) {
+  for (const auto& [ascending, other] :
+       {std::pair{"450,640,900", "900,450,640"}, {"450,500,551,640,900,2200", "2200,640,450,900,551,500"}}) {
+    ASSERT_EQ(render(std::string("bands,wavelengths=") + ascending, "a.exr").code, 0);
+    ASSERT_EQ(render(std::string("bands,wavelengths=") + other, "b.exr").code, 0);
+    const ImageFile a = read_image(path("a.exr"), {}), b = read_image(path("b.exr"), {});
+    EXPECT_EQ(a.image.channels, b.image.channels);
+    for (const double nm : {450., 640., 900.})
+      EXPECT_NEAR(a.image.at(2, 2, a.image.channel(spectral_channel(nm)).value()),
+                  b.image.at(2, 2, b.image.channel(spectral_channel(nm)).value()), 1e-4 * white());
+  }
 }
 
 TEST_F(BandCommands, AreNoImageUntilThreeAreChosen) {

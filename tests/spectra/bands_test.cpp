@@ -11,6 +11,7 @@
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_preview.h"
 #include "spectra/wavelengths/registry.h"
+#include "spectra/wavelengths/response_sampler.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
 
@@ -52,8 +53,10 @@ std::vector<double> wavelengths_of(const WavelengthStrategy& strategy) {
   return nm;
 }
 
-TEST(Bands, AreTheWavelengthsAskedForInAscendingOrder) {
-  EXPECT_THAT(wavelengths_of(*at({850, 450, 2200})), ElementsAre(450, 850, 2200));
+TEST(Bands, AreTheWavelengthsInTheOrderInWhichTheyAreAskedFor) {
+  EXPECT_THAT(wavelengths_of(*at({850, 450, 2200})), ElementsAre(850, 450, 2200));
+  EXPECT_THAT(at({850, 450, 2200})->fixed_nm(), ElementsAre(850, 450, 2200));
+  EXPECT_THAT(at({850, 450, 2200})->listed_nm(), ElementsAre(450, 850, 2200));
   EXPECT_THAT(wavelengths_of(*make_bands({number("float", "lambdamin", {450}), number("float", "lambdamax", {475}),
                                           number("float", "step", {12.5})})),
               ElementsAre(450, 462.5, 475));
@@ -147,8 +150,10 @@ class Responses : public ::testing::Test {
     std::ofstream(folder_ / name) << text;
     return (folder_ / name).string();
   }
-  static std::unique_ptr<WavelengthStrategy> make(std::vector<std::string> files) {
-    return make_bands({{"string", "responses", {}, {}, std::move(files)}});
+  static std::unique_ptr<WavelengthStrategy> make(std::vector<std::string> files, std::vector<std::string> names = {}) {
+    std::vector<ParsedParam> params{{"string", "responses", {}, {}, std::move(files)}};
+    if (!names.empty()) params.push_back({"string", "names", {}, {}, std::move(names)});
+    return make_bands(std::move(params));
   }
 
   fs::path folder_;
@@ -168,7 +173,7 @@ TEST_F(Responses, AreSampledWithinTheirSupport) {
 
 /// By the midpoints of many steps between the response's points.
 template <class Function>
-double mean_under(const std::vector<ResponsePoint>& response, const Function& f) {
+double midpoint_mean(const std::vector<ResponsePoint>& response, const Function& f) {
   constexpr int kSteps = 1000;
   double weighted = 0, area = 0;
   for (size_t i = 1; i < response.size(); ++i)
@@ -210,10 +215,10 @@ TEST_F(Responses, ArePaddedWithAnyNumberOfZeros) {
       first += x, second += x * x;
     }
     const auto mean = [&](int power) {
-      return mean_under(c.points, [&](double nm) { return std::pow((nm - c.points.front().nm) / width, power); });
+      return midpoint_mean(c.points, [&](double nm) { return std::pow((nm - c.points.front().nm) / width, power); });
     };
     // x and its square rise with u, from 0 to 1: the mean of their midpoints is off by half a step at most. Half a
-    // float's step of wavelength comes to it, and what mean_under's steps leave.
+    // float's step of wavelength comes to it, and what midpoint_mean's steps leave.
     const double rounding = 6.2e-5 / width + 1e-6;
     EXPECT_NEAR(first / kSamples, mean(1), 0.5 / kSamples + rounding) << c.text.substr(0, 60);
     EXPECT_NEAR(second / kSamples, mean(2), 0.5 / kSamples + 2 * rounding) << c.text.substr(0, 60);
@@ -240,7 +245,7 @@ TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
   for (size_t b = 0; b < 5; ++b) {
     const Band& band = bands->bands()[b];
     EXPECT_EQ(count[b], kSamples * 4 / 5);
-    EXPECT_NEAR(sum[b] / count[b] / mean_under(band.response, [&](double nm) { return double(light->at(float(nm))); }),
+    EXPECT_NEAR(sum[b] / count[b] / midpoint_mean(band.response, [&](double nm) { return double(light->at(float(nm))); }),
                 1, 2e-3)
         << band.nm;
   }
@@ -248,11 +253,81 @@ TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
 
 TEST_F(Responses, ThatAreNothingAreRefused) {
   EXPECT_THAT(error_of([&] { make({write("a.spd", "400 0  500 0")}); }), HasSubstr("0 at every wavelength"));
-  EXPECT_THAT(error_of([&] {
-                make({write("a.spd", "400 0 410 1 420 0"), write("b.spd", "400 0 410 1 420 0")});
-              }),
-              HasSubstr("two bands at 410 nm"));
   EXPECT_THAT(error_of([&] { make({(folder_ / "none.spd").string()}); }), HasSubstr("cannot read spectrum file"));
+}
+
+/// Of one mean wavelength, and neither in the order of the alphabet nor of the wavelengths.
+TEST_F(Responses, HaveTheNamesOfTheirFilesAndKeepTheirOrder) {
+  const std::vector<std::string> files{write("par.spd", "400 1 700 1"), write("green.spd", "540 1 560 1"),
+                                       write("blue.spd", "450 1 460 1")};
+  const auto names_of = [](const WavelengthStrategy& strategy) {
+    std::vector<std::string> names;
+    for (const Band& band : strategy.bands()) names.push_back(band.name);
+    return names;
+  };
+  const auto bands = make(files);
+  EXPECT_THAT(names_of(*bands), ElementsAre("par", "green", "blue"));
+  EXPECT_THAT(wavelengths_of(*bands), ElementsAre(550, 550, 455));
+  EXPECT_EQ(bands->range_nm().min, 400);
+  EXPECT_EQ(bands->range_nm().max, 700);
+  EXPECT_THAT(names_of(*make(files, {"PAR", "G", "B"})), ElementsAre("PAR", "G", "B"));
+  EXPECT_EQ(at({550})->bands()[0].name, "");
+}
+
+TEST_F(Responses, NeedNamesThatTellThemApart) {
+  const std::string file = write("nir.spd", "800 1 900 1");
+  const auto error = [&](std::vector<std::string> names) {
+    return error_of([&] { make({file, file}, std::move(names)); });
+  };
+  EXPECT_THAT(error({}), HasSubstr("two bands are named \"nir\": \"names\" gives each band a name of its own"));
+  EXPECT_THAT(error({"a", "a"}), HasSubstr("two bands are named \"a\""));
+  EXPECT_THAT(error({"a"}), HasSubstr("\"names\" has 1 names for 2 bands"));
+  EXPECT_THAT(error({"a", ""}), HasSubstr("a band's name is empty"));
+  EXPECT_THAT(error({"a", "b,c"}), HasSubstr("\"b,c\" is no name for a band"));
+  EXPECT_THAT(error({"a", "a_se"}), HasSubstr("standard errors"));
+  EXPECT_EQ(error({"a", "b"}), "");
+  EXPECT_THAT(error_of([] {
+                make_bands({number("float", "wavelengths", {500}),
+                            {"string", "names", {}, {}, std::vector<std::string>{"green"}}});
+              }),
+              HasSubstr("\"names\" are those of \"responses\""));
+}
+
+/// Against midpoints of 0.001 nm; both factors have points between whole nanometres, and rise where the other does.
+TEST_F(Responses, TimesALightAreTheirProduct) {
+  const std::vector<ResponsePoint> response{{440.3, 0}, {441, 1}, {447.5, 0.2}, {460, 0}};
+  const std::vector<SpectrumPoint> lines{{430, 0.1}, {440.8, 0}, {441.2, 5}, {441.6, 0.5}, {455.5, 2}, {470, 0}};
+  const TabulatedSpectrum light(lines);
+  const auto lit = lit_response(response, light);
+  const ResponseSampler sampler(lit, {});
+  double sum = 0, area = 0, moment = 0;
+  const auto at = [&](double nm) {
+    for (size_t i = 1; i < response.size(); ++i)
+      if (nm <= response[i].nm)
+        return std::lerp(response[i - 1].value, response[i].value,
+                         (nm - response[i - 1].nm) / (response[i].nm - response[i - 1].nm));
+    return 0.;
+  };
+  for (double nm = 440.3005; nm < 460; nm += 0.001) {
+    const double r = at(nm), product = r * double(light.at(float(nm)));
+    sum += product, area += r, moment += product * nm;
+  }
+  EXPECT_NEAR(mean_under(response, light), sum / area, 2e-5 * sum / area);
+  EXPECT_NEAR(sampler.centroid_nm(), moment / sum, 1e-3);
+  const std::vector<SpectrumPoint> elsewhere{{300, 1}, {400, 0}, {600, 0}};
+  EXPECT_TRUE(lit_response(response, TabulatedSpectrum(elsewhere)).empty());
+  EXPECT_EQ(mean_under(response, TabulatedSpectrum(elsewhere)), 0);
+}
+
+TEST(BandPreview, BandsOfOneMeanShareItsWeight) {
+  const std::vector<Band> bands{{650}, {450}, {550, {}, "a"}, {600}, {550, {}, "b"}};
+  const std::vector<Band> once{{450}, {550}, {600}, {650}};
+  const auto shared = xyz_of_bands(bands), alone = xyz_of_bands(once);
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(shared[2][c], shared[4][c]);
+    EXPECT_DOUBLE_EQ(shared[2][c] + shared[4][c], alone[1][c]);
+    EXPECT_EQ(shared[0][c], alone[3][c]);
+  }
 }
 
 TEST(BandPreview, IsTheColorOfTheSpectrumBetweenTheBands) {

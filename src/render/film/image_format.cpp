@@ -18,8 +18,8 @@ class PixelWriter {
     if (!format.space.empty()) {
       names_ = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"};
     } else {
-      for (const Band& band : format.bands) names_.push_back(spectral_channel(band.nm));
-      for (const Band& band : format.bands) names_.push_back(variance_channel(band.nm));
+      for (const Band& band : format.bands) names_.push_back(spectral_channel(band));
+      for (const Band& band : format.bands) names_.push_back(variance_channel(band));
       names_.emplace_back("leaf");
       preview_ = xyz_of_bands(format.bands);
       if (!preview_.empty()) names_.insert(names_.end(), {"R", "G", "B"});

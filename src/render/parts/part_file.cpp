@@ -102,7 +102,7 @@ Json json_of(const std::vector<Band>& bands) {
   for (const Band& band : bands) {
     Json points = Json::array();
     for (const ResponsePoint& p : band.response) points.push_back({p.nm, p.value});
-    list.push_back({{"nm", band.nm}, {"response", points}});
+    list.push_back({{"nm", band.nm}, {"response", points}, {"name", band.name}});
   }
   return list;
 }
@@ -111,6 +111,7 @@ std::vector<Band> bands_of(const Json& list) {
   for (const Json& j : list) {
     Band& band = bands.emplace_back(Band{j.at("nm")});
     for (const Json& p : j.at("response")) band.response.push_back({p.at(0), p.at(1)});
+    band.name = j.at("name");
   }
   return bands;
 }

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <set>
 
 #include "spectra/spd_file.h"
 #include "spectra/wavelengths/registry.h"
@@ -22,6 +24,10 @@ constexpr Param kParams[] = {
      .kind = ParamKind::string,
      .doc =
          "Files (.spd) of a sensor's responses, one for each band: a channel is the mean radiance under its response.",
+     .list = true},
+    {.name = "names",
+     .kind = ParamKind::string,
+     .doc = "Names of the bands of \"responses\", for channels, columns and rows; by default those of the files.",
      .list = true},
     {.name = "lambdamin",
      .kind = ParamKind::real,
@@ -55,13 +61,25 @@ std::vector<double> even_wavelengths(const Params& p) {
 void check_choice(const Params& p) {
   const bool listed = p.given("wavelengths"), sensor = p.given("responses");
   if (listed && sensor) fail(p.where("responses"), "\"wavelengths\" and \"responses\" exclude each other");
+  if (p.given("names") && !sensor)
+    fail(p.where("names"), "\"names\" are those of \"responses\": a single wavelength is its own name");
   for (const std::string_view name : {"lambdamin", "lambdamax", "step"})
     if ((listed || sensor) && p.given(name))
       fail(p.where(name), "\"{}\" is for evenly spaced wavelengths: others are given", name);
 }
 
-/// Any number of spectral bands. A path carries at most four of them; consecutive samples carry different bands in
-/// turn. Each channel is the mean over the samples that carried its band.
+/// Throws InputError for a name that cannot stand in a column of CSV or in a channel of an EXR file.
+void check_name(const std::string& name, const Location& where) {
+  const auto is_bad = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0 || c == ',' || c == '"'; };
+  if (name.empty()) fail(where, "a band's name is empty");
+  if (std::ranges::any_of(name, is_bad))
+    fail(where, "\"{}\" is no name for a band: commas, quotes and control characters are not allowed", name);
+  if (name.ends_with("_se"))
+    fail(where, "\"{}\" is no name for a band: columns that end in _se are standard errors", name);
+}
+
+/// Any number of spectral bands, in the order in which they are given. A path carries at most four of them; consecutive
+/// samples carry different bands in turn. Each channel is the mean over the samples that carried its band.
 class Bands final : public WavelengthStrategy {
  public:
   explicit Bands(const Params& p) {
@@ -69,14 +87,20 @@ class Bands final : public WavelengthStrategy {
     const std::vector<double> even = even_wavelengths(p), listed = p.reals("wavelengths");
     const auto files = p.files("responses");
     if (!files.empty())
-      read_responses(files, p.where("responses"));
+      read_responses(files, p);
     else
       for (const double nm : listed.empty() ? even : listed) bands_.push_back({nm});
-    sort_and_check(p.where(files.empty() ? "wavelengths" : "responses"));
-    if (files.empty())
-      for (const Band& band : bands_) listed_nm_.push_back(static_cast<float>(band.nm));
+    const Location where = p.where(files.empty() ? "wavelengths" : "responses");
+    if (bands_.size() > kMostBands) fail(where, "these are {} bands, {} is the limit", bands_.size(), kMostBands);
     for (const Band& band : bands_)
-      if (!band.response.empty()) samplers_.emplace_back(band.response, p.where("responses"));
+      if (band.response.empty())
+        nm_.push_back(static_cast<float>(band.nm));
+      else
+        samplers_.emplace_back(band.response, where);
+    listed_nm_ = nm_;
+    std::ranges::sort(listed_nm_);
+    if (const auto twice = std::ranges::adjacent_find(listed_nm_); twice != listed_nm_.end())
+      fail(where, "there are two bands at {:.8g} nm", *twice);
     find_range();
   }
 
@@ -96,7 +120,7 @@ class Bands final : public WavelengthStrategy {
       const size_t band = count <= kLanes ? i : (index + i * count / kLanes) % count;
       lambda.band[i] = static_cast<uint16_t>(band);
       lambda.active[i] = true;
-      lambda.nm[i] = samplers_.empty() ? listed_nm_[band] : samplers_[band].sample(u);
+      lambda.nm[i] = samplers_.empty() ? nm_[band] : samplers_[band].sample(u);
       lambda.pdf[i] = 1;
     }
     return lambda;
@@ -104,7 +128,7 @@ class Bands final : public WavelengthStrategy {
 
   Interval range_nm() const override { return range_nm_; }
   std::span<const float> fixed_nm() const override {
-    return listed_nm_.size() <= kLanes ? std::span<const float>(listed_nm_) : std::span<const float>();
+    return nm_.size() <= kLanes ? std::span<const float>(nm_) : std::span<const float>();
   }
   std::span<const float> listed_nm() const override { return listed_nm_; }
   std::span<const Band> bands() const override { return bands_; }
@@ -121,33 +145,41 @@ class Bands final : public WavelengthStrategy {
   }
 
  private:
-  void read_responses(const std::vector<std::filesystem::path>& files, const Location& where) {
+  void read_responses(const std::vector<std::filesystem::path>& files, const Params& p) {
+    const Location where = p.where("responses");
     for (const auto& file : files) {
       std::vector<ResponsePoint> response;
-      for (const SpectrumPoint& p : read_spd_points(file, where)) response.push_back({p.lambda_nm, p.value});
+      for (const SpectrumPoint& point : read_spd_points(file, where))
+        response.push_back({point.lambda_nm, point.value});
       response = without_margins(response);
-      bands_.push_back({ResponseSampler(response, where).centroid_nm(), response});
+      bands_.push_back({ResponseSampler(response, where).centroid_nm(), response, file.stem().string()});
     }
+    if (p.given("names")) rename(p.strings("names"), p.where("names"));
+    for (const Band& band : bands_) check_name(band.name, p.where(p.given("names") ? "names" : "responses"));
+    std::set<std::string_view> names;
+    for (const Band& band : bands_)
+      if (!names.insert(band.name).second)
+        fail(p.where(p.given("names") ? "names" : "responses"),
+             "two bands are named \"{}\": \"names\" gives each band a name of its own, as in names=red,nir", band.name);
   }
 
-  /// Channels are named after their wavelength, which must therefore be unique.
-  void sort_and_check(const Location& where) {
-    if (bands_.size() > kMostBands) fail(where, "these are {} bands, {} is the limit", bands_.size(), kMostBands);
-    std::ranges::sort(bands_, {}, &Band::nm);
-    for (size_t i = 1; i < bands_.size(); ++i)
-      if (bands_[i].nm - bands_[i - 1].nm < 1e-6) fail(where, "there are two bands at {:.8g} nm", bands_[i].nm);
+  void rename(const std::vector<std::string>& names, const Location& where) {
+    if (names.size() != bands_.size()) fail(where, "\"names\" has {} names for {} bands", names.size(), bands_.size());
+    for (size_t i = 0; i < names.size(); ++i) bands_[i].name = names[i];
   }
 
   void find_range() {
-    range_nm_ = {bands_.front().nm, bands_.back().nm};
+    const auto [least, most] = std::ranges::minmax(bands_, {}, &Band::nm);
+    range_nm_ = {least.nm, most.nm};
     for (const ResponseSampler& sampler : samplers_) {
       range_nm_.min = std::min(range_nm_.min, sampler.support_nm().min);
       range_nm_.max = std::max(range_nm_.max, sampler.support_nm().max);
     }
   }
 
-  std::vector<Band> bands_;                ///< ascending
-  std::vector<float> listed_nm_;           ///< wavelengths of the bands; empty if they have responses
+  std::vector<Band> bands_;
+  std::vector<float> nm_;                  ///< wavelengths of the bands; empty if they have responses
+  std::vector<float> listed_nm_;           ///< the same, ascending
   std::vector<ResponseSampler> samplers_;  ///< one for each band with a response
   Interval range_nm_{};
 };

@@ -22,6 +22,7 @@ class KnownSpectrum final : public Spectrum {
     const bool known = are_equal(std::bit_cast<Float4>(lambda.nm), std::bit_cast<Float4>(known_.nm));
     return known && lambda.count == known_.count ? values_ : spectrum_->sample(lambda);
   }
+  const Spectrum& base() const { return *spectrum_; }
 
  private:
   SpectrumPtr spectrum_;
@@ -34,6 +35,11 @@ class KnownSpectrum final : public Spectrum {
 SpectrumPtr known_at(SpectrumPtr spectrum, std::span<const float> nm) {
   if (nm.empty() || nm.size() > kLanes) return spectrum;
   return std::make_shared<KnownSpectrum>(std::move(spectrum), nm);
+}
+
+const Spectrum* base_of_known(const Spectrum& spectrum) {
+  const auto* known = dynamic_cast<const KnownSpectrum*>(&spectrum);
+  return known ? &known->base() : nullptr;
 }
 
 }  // namespace frond

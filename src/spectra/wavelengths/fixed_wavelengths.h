@@ -10,4 +10,7 @@ namespace frond {
 /// carry exactly them. Returns the spectrum itself if there are no wavelengths or more than kLanes.
 SpectrumPtr known_at(SpectrumPtr spectrum, std::span<const float> nm);
 
+/// Returns the spectrum whose values known_at has stored; nullptr for any other spectrum.
+const Spectrum* base_of_known(const Spectrum& spectrum);
+
 }  // namespace frond

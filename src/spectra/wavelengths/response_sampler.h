@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/spectrum.h"
 #include "core/wavelengths.h"
 
 namespace frond {
@@ -28,6 +29,14 @@ class ResponseSampler {
   Interval support_nm_{};
   double centroid_nm_ = 0;
 };
+
+/// Returns the product of a response and a light's spectrum as points to interpolate between. The integral over any
+/// interval of 1 nm or more is within 1e-6 of that of the product, relative to the largest product. Empty if the
+/// product is 0 everywhere.
+std::vector<ResponsePoint> lit_response(std::span<const ResponsePoint> response, const Spectrum& light);
+
+/// Returns the mean of a spectrum under a response: the integral of their product, over that of the response.
+double mean_under(std::span<const ResponsePoint> response, const Spectrum& spectrum);
 
 /// Returns the points without the zeros at either end, except the innermost one on each side. Sensor tables are often
 /// padded with zeros, which would widen the support. Empty if all values are 0.

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "spectra/cie.h"
 #include "spectra/color/color_space.h"
 #include "spectra/wavelengths/band_preview.h"
+#include "spectra/wavelengths/response_sampler.h"
 
 namespace frond::compare {
 namespace {
@@ -17,7 +19,7 @@ ChannelList colors() {
           .unit = std::string(kErrorSpace)};
 }
 
-std::string name_of(const Band& band) { return fmt::format("{:.8g} nm", band.nm); }
+std::string name_of(const Band& band) { return band.name.empty() ? fmt::format("{:.8g} nm", band.nm) : band.name; }
 
 /// Spectrum of all lights, each weighted by its photometric power, normalized to luminance 1.
 class White {
@@ -48,19 +50,10 @@ class White {
     return sum;
   }
 
-  /// Integrates by midpoints of steps of 1 nm, or of shorter segments of the response.
   double under(std::span<const ResponsePoint> response) const {
-    constexpr double kMostSteps = 10000;
-    double sum = 0, area = 0;
-    for (size_t i = 1; i < response.size(); ++i) {
-      const auto &a = response[i - 1], &b = response[i];
-      const int steps = int(std::clamp(std::ceil(b.nm - a.nm), 1.0, kMostSteps));
-      for (int k = 0; k < steps; ++k) {
-        const double t = (k + 0.5) / steps, weight = (b.nm - a.nm) / steps * std::lerp(a.value, b.value, t);
-        sum += weight * at(std::lerp(a.nm, b.nm, t)), area += weight;
-      }
-    }
-    return sum / area;
+    double sum = 0;
+    for (const Share& light : lights_) sum += light.weight * mean_under(response, *light.emission);
+    return sum;
   }
 
   std::vector<Share> lights_;
@@ -81,7 +74,10 @@ void choose_image(ChannelList& list) {
     list.how_shown = "colours by linear interpolation between the bands";
     return;
   }
-  const std::array<size_t, 3> shown{count - 1, count / 2, 0};
+  std::vector<size_t> ascending(count);
+  std::iota(ascending.begin(), ascending.end(), 0);
+  std::ranges::stable_sort(ascending, {}, [&list](size_t b) { return list.bands[b].nm; });
+  const std::array shown{ascending[count - 1], ascending[count / 2], ascending[0]};
   for (size_t c = 0; c < 3; ++c) list.shown[shown[c]][c] = 1;
   list.how_shown = fmt::format("false colours: {} as red, {} as green, {} as blue", name_of(list.bands[shown[0]]),
                                name_of(list.bands[shown[1]]), name_of(list.bands[shown[2]]));
@@ -96,7 +92,7 @@ ChannelList bands_of(const Scene& scene) {
     list.names.push_back(name_of(band));
     list.white.push_back(white.in(band));
     if (!(list.white.back() > 0))
-      fail({}, "the scene's lights give no light at {}: there is nothing to compare", name_of(band));
+      fail({}, "the scene's lights give no light in the band {}: there is nothing to compare", name_of(band));
   }
   choose_image(list);
   return list;

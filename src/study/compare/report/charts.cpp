@@ -45,9 +45,15 @@ std::optional<ChartPoint> plateau_of(const CandidateResult& measured, Measure me
   return {};
 }
 
+/// Returns the bands' interval of wavelengths.
+Interval range_nm(const ChannelList& channels) {
+  const auto [least, most] = std::ranges::minmax(channels.bands, {}, &Band::nm);
+  return {least.nm, most.nm};
+}
+
 double mean_step_nm(const ChannelList& channels) {
-  const size_t count = channels.bands.size();
-  return count < 2 ? 10 : (channels.bands.back().nm - channels.bands.front().nm) / double(count - 1);
+  const Interval range = range_nm(channels);
+  return range.min < range.max ? (range.max - range.min) / double(channels.bands.size() - 1) : 10;
 }
 
 /// Returns the bias in the axis's unit with its 95 % interval; NaN if it is not above 0 with 97.5 % confidence.
@@ -124,6 +130,7 @@ std::optional<Chart> bands_chart(const Comparison& c) {
       for (const double v : {noise.points.back().y, bias.points.back().bar.low, bias.points.back().bar.high})
         if (v > 0) y.include(v);
     }
+    for (Series* by_wavelength : {&noise, &bias}) std::ranges::stable_sort(by_wavelength->points, {}, &ChartPoint::x);
     series.insert(series.end(), {noise, bias});
   }
   if (y.is_empty()) return {};
@@ -132,7 +139,8 @@ std::optional<Chart> bands_chart(const Comparison& c) {
       marks("bars: intervals of 95 %; without a mark the bias is not told from none", "#000000", Mark::bar, 5));
   const uint64_t samples = c.candidates[0].runs.back().samples;
   series.push_back(line(fmt::format("noise of one render of {} samples", samples), "#000000", 2, Dash::dotted));
-  const Range nm{bands.front().nm - step_nm, bands.back().nm + step_nm};
+  const Interval all = range_nm(c.channels);
+  const Range nm{all.min - step_nm, all.max + step_nm};
   const std::string error = fmt::format("bias and noise ({})", unit.of_axis(c.channels));
   return Chart{1, {{900, 520, "", {"wavelength (nm)", nm}, {error, y, true}, "", false, series}}};
 }

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "core/spectrum.h"
+
+namespace frond {
+
+/// Returns wavelengths (nm), ascending, from range_nm.min to range_nm.max, between which a spectrum is linear, or
+/// smooth over the nanometre that they are apart at most: both ends, whole nanometres, and a table's own points. Sums
+/// over them do not miss the lines of a lamp.
+std::vector<double> points_nm(const Spectrum& spectrum, Interval range_nm);
+
+/// Appends the points of a table that `spectrum` is or is made of.
+void append_points_nm(const Spectrum& spectrum, std::vector<double>& nm);
+
+/// Sorts and removes duplicates and what lies outside of the range; adds its ends and whole nanometres.
+void complete_points_nm(Interval range_nm, std::vector<double>& nm);
+
+}  // namespace frond
