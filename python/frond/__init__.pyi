@@ -154,17 +154,19 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
 
     Returns the job's table."""
 
-def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, irradiance: str | os.PathLike = 'solar-am1.5-global', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, irradiance: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
-    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`,
-    "areas" `[instance]`, "wavelengths_nm", and if there is PAR, "par_umol_m2_s" and "par_umol_m2_s_se" `[instance]`: absorbed
-    photons by leaf area.
+    Bands with responses have names, in the column "band".
+
+    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][band]`,
+    "areas" `[instance]`, "wavelengths_nm", for bands with names "bands", and if there is PAR, "par_umol_m2_s" and
+    "par_umol_m2_s_se" `[instance]`: absorbed photons by leaf area.
 
     Measure the light budget of a scene: reflection, transmission, absorption.
 
-    Reports shares of the incident light by wavelength: reflected, transmitted, and absorbed by each material. With wavelengths from 400 to 700 nm, also shares of the photons (PAR).
+    Reports shares of the incident light by wavelength: reflected, transmitted, and absorbed by each material. With wavelengths from 400 to 700 nm, also shares of the photons (PAR). The share of a band with a response is that of the light under it: the mean weighted by response times irradiance.
 
     scene: Scene file (pbrt-v4 format).
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
@@ -174,7 +176,7 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
-    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, or scene: that of the scene's light sky. Unit: W/(m2 nm). Default: solar-am1.5-global.
+    irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, an .spd file, or scene: that of the scene's lights. By default bands have that of the scene, and photons, which need a unit, solar-am1.5-global. Unit: W/(m2 nm).
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
@@ -184,13 +186,14 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv."""
 
-def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
+def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
     """Measure a material's reflectance, transmittance and absorptance.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10. Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
+    illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or an .spd file. By default that of equal energy. Default: stdillum-E.
     rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9.
     se: Stop when the standard errors of R, T and A are at most this. Range: above 0.
     rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
@@ -199,21 +202,22 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.Path
     json: JSON file to write; - is standard output.
     plot: Chart of R and 1 - T against wavelength or angle: .svg or .png."""
 
-def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
+def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
     """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
     `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
-    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi). With
-    with_, "f" and "f_se" have the materials along a first axis.
+    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm", for bands with names also "band". patches: (number in
+    theta, number in phi). With with_, "f" and "f_se" have the materials along a first axis.
 
     Measure a material's BRDF and BTDF over the whole sphere.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10. Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
+    illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or an .spd file. By default that of equal energy. Default: stdillum-E.
     rays: Number of rays for each measurement. Default: 1e6.
     patches: THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere. Default: 20x40.
-    integrate: Integrate f over each patch, without noise, if the material evaluates f exactly; otherwise use rays.
+    integrate: Integrate f over each patch, without noise, if the material evaluates f exactly and the light is of one wavelength; otherwise use rays.
     rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
@@ -338,7 +342,7 @@ def convert(images: str | os.PathLike | Sequence[str | os.PathLike], output: str
 
     images: EXR files of one size and colour space.
     output: Image to write: .png, .jpg or .exr; it has the channels R, G and B.
-    bands: Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy light is 1. Unit: nm. Range: above 0.
+    bands: The three bands to display as red, green and blue, by wavelength in nm or by name, such as 850,650,550 or nir,red,green; white in equal-energy light is 1.
     exposure: Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops. Default: 0.
     white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default.

@@ -87,19 +87,24 @@ def flux(scene, wavelengths=None, *, by=None, **options):
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
-    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`,
-    "areas" `[instance]`, "wavelengths_nm", and if there is PAR, "par_umol_m2_s" and "par_umol_m2_s_se" `[instance]`: absorbed
-    photons by leaf area."""
+    Bands with responses have names, in the column "band".
+
+    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][band]`,
+    "areas" `[instance]`, "wavelengths_nm", for bands with names "bands", and if there is PAR, "par_umol_m2_s" and
+    "par_umol_m2_s_se" `[instance]`: absorbed photons by leaf area."""
     result = FUNCTIONS["flux"](scene, wavelengths, by=by, **options)
     if by is None:
         return result.table
     columns = result.columns["instances"]
     bands = [name for name in columns if name.startswith("absorbed_") and not name.endswith("_se")]
     import numpy
+    labels, rows = [name.removeprefix("absorbed_") for name in bands], result.columns["flux"]
+    nm = dict(zip(rows["band"], rows["wavelength_nm"])) if "band" in rows else {label: float(label) for label in labels}
     return result.tables["flux"], {
         "absorbed": numpy.stack([columns[name] for name in bands], axis=1),
         "absorbed_se": numpy.stack([columns[name + "_se"] for name in bands], axis=1),
-        "areas": columns["area"], "wavelengths_nm": [float(name.removeprefix("absorbed_")) for name in bands],
+        "areas": columns["area"], "wavelengths_nm": [nm[label] for label in labels],
+        **({"bands": labels} if "band" in rows else {}),
         **{name: columns[name] for name in ("par_umol_m2_s", "par_umol_m2_s_se") if name in columns}}
 
 
@@ -107,23 +112,26 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):
     """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
     `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
-    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi). With
-    with_, "f" and "f_se" have the materials along a first axis."""
+    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm", for bands with names also "band". patches: (number in
+    theta, number in phi). With with_, "f" and "f_se" have the materials along a first axis."""
     import numpy
-    nm, theta = bands_of(wavelengths), reals(angles, "angles", "degrees")
+    nm = wavelengths if isinstance(wavelengths, str) else bands_of(wavelengths)
+    theta = reals(angles, "angles", "degrees")
     if isinstance(patches, str):
         patches = [int(v) if v.isdigit() else v for v in patches.replace(",", "x").split("x")]
     counts = tuple(whole(v, "patches") for v in texts(patches, "patches"))
     found = run("goniophotometer", material=material_text(material), wavelengths=nm, angles=theta,
                 patches="x".join(map(str, counts)), **options).columns["measurements"]
+    labels = [name for name in ("wavelength_nm", "band") if name in found]
+    lights = len(set(zip(*(found[name] for name in labels)))) if isinstance(nm, str) else len(nm)
     # One or more materials: the further ones of with_ are along a first axis.
     materials = [] if options.get("with_") is None else [-1]
-    arrays = {name: numpy.reshape(found[name], (*materials, len(theta), len(nm), *counts)) for name in
-              ("f_per_sr", "f_se", "theta_deg", "phi_deg", "projected_solid_angle_sr")}
+    arrays = {name: numpy.reshape(found[name], (*materials, len(theta), lights, *counts)) for name in
+              ("f_per_sr", "f_se", "theta_deg", "phi_deg", "projected_solid_angle_sr", *labels)}
     first = {name: array.reshape(-1, *counts)[0] for name, array in arrays.items()}
     result = {"theta_o_deg": first["theta_deg"], "phi_o_deg": first["phi_deg"],
               "projected_solid_angle_sr": first["projected_solid_angle_sr"], "f": arrays["f_per_sr"], "f_se": arrays["f_se"]}
-    return {"theta_i_deg": numpy.array(theta), "wavelength_nm": numpy.array(nm), **result}
+    return {"theta_i_deg": numpy.array(theta), **{name: arrays[name].reshape(-1, lights, *counts)[0, :, 0, 0] for name in labels}, **result}
 
 
 @_with_keywords_of("conform")

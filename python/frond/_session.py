@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import threading
 from pathlib import Path
 
@@ -287,21 +288,24 @@ class Image:
 
     def to_xarray(self):
         """Returns an xarray.Dataset of all channels over the pixels "y" (rows, from the top) and "x". Channels that bands have,
-        the radiance and its variance, are one variable each over "wavelength_nm", "y" and "x". Raises ImportError without
-        the package xarray."""
+        the radiance and its variance, are one variable each over "wavelength_nm", or "band" if the bands have names, "y" and
+        "x". Raises ImportError without the package xarray."""
         import numpy
         import xarray
         variables, bands = {}, {}
+        keys = {name[3:]: float(name[3:-2].replace(",", ".")) if re.fullmatch(r"S0\.\d+,\d+nm", name) else name[3:]
+                for name in self.channels if name.startswith("S0.")}  # of the bands
         for i, name in enumerate(self.channels):
-            kind, _, rest = name.rpartition(".") if name.endswith("nm") else ("", "", "")
-            if kind in ("S0", "variance"):
-                bands.setdefault("radiance" if kind == "S0" else kind, {})[float(rest[:-2].replace(",", "."))] = self.array[:, :, i]
+            kind, _, rest = name.partition(".")
+            if kind in ("S0", "variance") and rest in keys:
+                bands.setdefault("radiance" if kind == "S0" else kind, {})[keys[rest]] = self.array[:, :, i]
             else:
                 variables[name] = (("y", "x"), self.array[:, :, i])
         coordinates = {}
         for name, planes in bands.items():
-            coordinates["wavelength_nm"] = list(planes)
-            variables[name] = (("wavelength_nm", "y", "x"), numpy.stack(list(planes.values())))
+            dimension = "band" if any(isinstance(key, str) for key in planes) else "wavelength_nm"
+            coordinates[dimension] = list(planes)
+            variables[name] = ((dimension, "y", "x"), numpy.stack(list(planes.values())))
         return xarray.Dataset(variables, coordinates, self.attributes)
 
     def save(self, path):

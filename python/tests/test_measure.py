@@ -263,12 +263,34 @@ def test_a_bsdf_has_any_number_of_wavelengths():
             call()
 
 
+def test_bands_have_names(scene_text, tmp_path):
+    """Of one mean wavelength, in the order of the files."""
+    (tmp_path / "par.spd").write_text("400 1\n700 1\n")
+    (tmp_path / "green.spd").write_text("540 1\n560 1\n")
+    (tmp_path / "canopy.pbrt").write_text(CANOPY)
+    bands = f"bands,responses={tmp_path}/par.spd,{tmp_path}/green.spd"
+    brf = frond.brf(tmp_path / "canopy.pbrt", bands, zenith=[0], paths=64)
+    assert list(brf["band"]) == ["par", "green"] and list(brf["wavelength_nm"]) == [550, 550]
+    flux, leaves = frond.flux(tmp_path / "canopy.pbrt", bands + ",names=PAR,G", by="instance", paths=4096)
+    assert list(flux["band"])[:2] == ["PAR", "G"] == leaves["bands"]
+    assert leaves["wavelengths_nm"] == [550, 550] and leaves["absorbed"].shape[1] == 2
+    share = frond.goniophotometer("diffuse", bands, patches=(2, 2), rays=1000, illuminant="stdillum-D65")
+    assert list(share["band"]) == ["par", "green"] and list(share["wavelength_nm"]) == [550, 550] and share["f"].shape == (1, 2, 2, 2)
+    image = frond.loads(scene_text, wavelengths=bands).render(1)
+    assert image.channels[:2] == ["S0.par", "S0.green"] and "variance.green" in image.channels
+    xarray = pytest.importorskip("xarray")
+    data = image.to_xarray()
+    assert isinstance(data, xarray.Dataset) and data.radiance.dims == ("band", "y", "x")
+    assert list(data.band) == ["par", "green"] == list(data.variance.band)
+    assert numpy.array_equal(data.radiance.sel(band="green"), image["S0.green"])
+
+
 def test_to_xarray(scene_text, tmp_path):
     xarray = pytest.importorskip("xarray")
     image = frond.loads(scene_text, wavelengths=[800, 551]).render(1)
     data = image.to_xarray()
     assert isinstance(data, xarray.Dataset) and data.radiance.dims == ("wavelength_nm", "y", "x")
-    assert list(data.wavelength_nm) == [551, 800] == list(data.variance.wavelength_nm)
+    assert list(data.wavelength_nm) == [800, 551] == list(data.variance.wavelength_nm)
     assert numpy.array_equal(data.radiance.sel(wavelength_nm=551), image["S0.551,000000nm"])
     colors = frond.loads(scene_text, wavelengths="smpte").render(1)
     assert numpy.array_equal(colors.to_xarray()["G"], colors["G"]) and colors.to_xarray()["G"].dims == ("y", "x")

@@ -22,8 +22,8 @@ struct PluginInfo {
   std::span<const Param> params;
 };
 
-/// Returns the result of `make()`. InputError and Stopped pass through; any other exception, and a null pointer as result, become
-/// an InputError at `where` that names the plug-in.
+/// Returns the result of `make()`. InputError and Stopped pass through; any other exception, and a null pointer as
+/// result, become an InputError at `where` that names the plug-in.
 template <class Make>
 auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
   const auto attempt = [&] {

@@ -1,5 +1,7 @@
 #include "instruments/beam.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -33,8 +35,14 @@ Hit flat_hit() {
   return hit;
 }
 
+std::string label_of(const Beam& beam) { return beam.band ? beam.band->name : fmt::format("{:g} nm", beam.lambda_nm); }
+
 const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
-  const Bsdf* bsdf = material.evaluate(flat_hit(), OneWavelength(beam.lambda_nm).sample(0), arena);
+  return bsdf_at(material, beam.band ? beam.band->lit_response.sample(0.5f) : float(beam.lambda_nm), arena);
+}
+
+const Bsdf& bsdf_at(const Material& material, float lambda_nm, Arena& arena) {
+  const Bsdf* bsdf = material.evaluate(flat_hit(), OneWavelength(double(lambda_nm)).sample(0), arena);
   if (!bsdf) fail({}, "the material has no surface there: nothing can be measured");
   return *bsdf;
 }

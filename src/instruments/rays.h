@@ -22,6 +22,7 @@ class RayBlock {
  public:
   RayBlock(const LitMaterial& lit, int64_t number)
       : bsdf_(bsdf_of(lit.material, lit.beam, arena_)),
+        material_(lit.material),
         beam_(lit.beam),
         toward_light_(toward_light(lit.beam)),
         as_rendered_(lit.as_rendered),
@@ -34,10 +35,13 @@ class RayBlock {
   /// has a defect.
   std::span<const Scattered> next(int64_t wanted) {
     const std::span batch = std::span(rays_).first(static_cast<size_t>(std::min<int64_t>(wanted, kBatch)));
-    if (as_rendered_)
-      scatter_as_rendered(bsdf_, toward_light_, rng_, batch);
+    if (beam_.band)
+      for (Scattered& ray : batch) {
+        of_ray_.reset();
+        scatter(bsdf_at(material_, beam_.band->lit_response.sample(rng_.uniform()), of_ray_), {&ray, 1});
+      }
     else
-      bsdf_.scatter(toward_light_, rng_, batch);
+      scatter(bsdf_, batch);
     for (const Scattered& ray : batch) check(ray);
     return batch;
   }
@@ -45,19 +49,27 @@ class RayBlock {
  private:
   static constexpr int64_t kBatch = 512;
 
+  void scatter(const Bsdf& bsdf, std::span<Scattered> rays) {
+    if (as_rendered_)
+      scatter_as_rendered(bsdf, toward_light_, rng_, rays);
+    else
+      bsdf.scatter(toward_light_, rng_, rays);
+  }
+
   void check(const Scattered& ray) const {
     constexpr float kRounding = 1e-2f;
     if (ray.weight.is_physical() &&
         (ray.weight.is_black() || std::abs(dot(ray.direction, ray.direction) - 1) < kRounding))
       return;
     fail({},
-         "the material has a defect: for light at {} degrees and {} nm it scatters a weight of {}, which is negative, "
+         "the material has a defect: for light at {} degrees and {} it scatters a weight of {}, which is negative, "
          "infinite or not a number, or in a direction of no unit length",
-         beam_.theta_deg, beam_.lambda_nm, ray.weight[0]);
+         beam_.theta_deg, label_of(beam_), ray.weight[0]);
   }
 
-  Arena arena_;
+  Arena arena_, of_ray_;  ///< the latter for the BSDF of one ray in a band
   const Bsdf& bsdf_;
+  const Material& material_;
   Beam beam_;
   Vec3 toward_light_;
   bool as_rendered_;

@@ -212,6 +212,7 @@ void warn_where_busy(const Log& log) {
 /// Times all materials first, on one thread, and estimates their variances afterwards on all threads.
 Result bench(const JobRun& run) {
   check_chart_param(run, "plot");
+  warn_if_nothing_is_kept(run);
   const TimedMaterials materials(run);
   if (run.args.given("plot")) check_bench_chart(materials.count(), materials.angles());
   const std::vector<TimedHit> hits = materials.hits();

@@ -135,23 +135,23 @@ std::string column_of(const BrfMeasurement& measurement) { return measurement.qu
 /// Appends one row for each view and band. `model` may be empty.
 void add_rows(Table& table, const BrfMeasurement& measurement, const std::string& model) {
   for (size_t view = 0; view < measurement.views.size(); ++view)
-    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band) {
+    for (size_t band = 0; band < measurement.bands.size(); ++band) {
       if (!model.empty()) table.add("model", model);
       table.add("zenith_deg", measurement.views[view].zenith_deg);
       table.add("azimuth_deg", measurement.views[view].azimuth_deg);
-      table.add("wavelength_nm", measurement.wavelengths_nm[band]);
+      add_band(table, measurement.bands[band]);
       table.add(column_of(measurement), measurement.at(view, band));
     }
 }
 
-/// Table with one row for each direction and one column for each wavelength.
+/// Table with one row for each direction and one column for each band.
 Table by_direction(const BrfMeasurement& measurement) {
   Table table{"brf"};
   for (size_t view = 0; view < measurement.views.size(); ++view) {
     table.add("zenith", measurement.views[view].zenith_deg);
     table.add("azimuth", measurement.views[view].azimuth_deg);
-    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band)
-      table.add(fmt::format("{:g} nm", measurement.wavelengths_nm[band]), measurement.at(view, band));
+    for (size_t band = 0; band < measurement.bands.size(); ++band)
+      table.add(heading_of(measurement.bands[band]), measurement.at(view, band));
   }
   return table;
 }
@@ -180,7 +180,7 @@ Result comparison_result(const ModelMeasurement& reference, const std::vector<Mo
     verdicts.add("us_per_path", m.cpu_us_per_path);
     verdicts.add("worst_difference", v.worst);
     verdicts.add("zenith_deg", m.brf.views[v.view].zenith_deg);
-    verdicts.add("wavelength_nm", m.brf.wavelengths_nm[v.band]);
+    add_band(verdicts, m.brf.bands[v.band]);
     verdicts.add("upper_bound", v.upper);
     verdicts.add("enough", std::string(v.answer == Answer::enough       ? "yes"
                                        : v.answer == Answer::not_enough ? "no"
@@ -240,6 +240,7 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
 /// The job: measures the scene as it is, or with the leaf models of --compare.
 Result brf(const JobRun& run) {
   check_chart_param(run, "plot");
+  warn_if_nothing_is_kept(run);
   const BrfRequest request{.views = views_of(run.args),
                            .target = target_of(run.args),
                            .period = period_of(run.args),

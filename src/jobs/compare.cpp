@@ -154,6 +154,7 @@ std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& st
 /// The job: renders reference and candidates, evaluates the errors, and writes the report.
 Result compare_models(const JobRun& run) {
   const Arguments& args = run.args;
+  warn_if_nothing_is_kept(run);
   const auto start = std::chrono::steady_clock::now();
   const Setting& setting = args.flag("quick") ? kQuick : kFull;
   Plan plan = plan_of(run, setting);

@@ -147,6 +147,7 @@ std::string add_errors(Result& result, const std::string& region, const std::str
 
 /// The job: prints errors over all pixels, and over leaf pixels if the image has a leaf mask.
 Result difference(const JobRun& run) {
+  warn_if_nothing_is_kept(run);
   const std::string output = run.args.text("output");
   if (!output.empty()) check_writable(output);
   if (!output.empty() && is_exr(output))

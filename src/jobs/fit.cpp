@@ -355,6 +355,7 @@ Result fit_all(const JobRun& run) {
 Result fit(const JobRun& run) {
   const Arguments& args = run.args;
   check_chart_param(run, "plot");
+  warn_if_nothing_is_kept(run);
   if (!args.given("file") && !args.given("data"))
     fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
   // Several files are as good as --all-leaves: there is no leaf that could be meant.

@@ -1,6 +1,6 @@
 #include "radiometry/flux.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
 #include "jobs/support/time_limit.h"
+#include "radiometry/horizontal_irradiance.h"
 #include "radiometry/photons.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"
-#include "spectra/tabulated.h"
 
 namespace frond {
 
@@ -38,9 +38,10 @@ constexpr JobParam kParams[] = {
     JobParam("by", text, "Measure the absorption of each instance of an object, one row each.",
              {.choices = kBy, .decides = true}),
     JobParam("irradiance", text,
-             "Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, "
-             "or scene: that of the scene's light sky.",
-             {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
+             "Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name "
+             "of a spectrum, an .spd file, or scene: that of the scene's lights. By default bands have that of the "
+             "scene, and photons, which need a unit, solar-am1.5-global.",
+             {.type = "SPECTRUM", .unit = "W/(m2 nm)", .decides = true}),
     kSwapParam,
     kSeedParam,
     kIgnoreUnsupportedParam,
@@ -79,41 +80,45 @@ MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeight
   return sum;
 }
 
-/// Table with one row for each quantity and wavelength. Rows of PAR photons have no wavelength.
+/// Table with one row for each quantity and band. Rows of PAR photons have no wavelength.
 Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
-  const auto add = [&table](const Row& row, double nm, const MeanError& share) {
+  const auto add = [&table](const Row& row, const Band& band, const MeanError& share) {
     table.add("quantity", row.quantity);
     table.add("material", row.material);
-    table.add("wavelength_nm", nm);
+    add_band(table, band);
     table.add("share", share);
   };
   for (const Row& row : rows_of(measurement)) {
-    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band)
-      add(row, measurement.wavelengths_nm[band], row.shares[band]);
-    if (photons) add(row, std::numeric_limits<double>::quiet_NaN(), share_of_photons(row.shares, *photons));
+    for (size_t band = 0; band < measurement.bands.size(); ++band) add(row, measurement.bands[band], row.shares[band]);
+    if (photons) add(row, {std::numeric_limits<double>::quiet_NaN()}, share_of_photons(row.shares, *photons));
   }
-  table.columns[2].missing = "PAR";
+  if (photons) std::ranges::find(table.columns, "wavelength_nm", &Column::name)->missing = "PAR";
   return table;
 }
 
-/// Text table with one row for each quantity and one column for each wavelength.
+/// Text table with one row for each quantity and one column for each band.
 std::string share_text(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
   for (const Row& row : rows_of(measurement)) {
     table.add("share", row.quantity);
     table.add("material", row.material);
     if (photons) table.add("PAR photons", share_of_photons(row.shares, *photons));
-    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band)
-      table.add(fmt::format("{:g} nm", measurement.wavelengths_nm[band]), row.shares[band]);
+    for (size_t band = 0; band < measurement.bands.size(); ++band)
+      table.add(heading_of(measurement.bands[band]), row.shares[band]);
   }
   return to_text(table);
+}
+
+/// Returns the column of an instance's absorption in a band: absorbed_550, absorbed_nir.
+std::string column_of(const Band& band) {
+  return "absorbed_" + (band.name.empty() ? fmt::format("{:g}", band.nm) : band.name);
 }
 
 /// Table with one row for each instance: area, absorbed photon flux (umol / (m2 s)), and absorbed shares of the
 /// incident light. It is built by whole columns, because there may be 1e8 instances.
 Table instance_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
-  const size_t bands = measurement.wavelengths_nm.size(), count = measurement.areas.size();
+  const size_t bands = measurement.bands.size(), count = measurement.areas.size();
   Table table{"instances"};
   const auto add = [&](const std::string& name, const auto& value) {
     std::vector<double> values(count);
@@ -133,7 +138,7 @@ Table instance_table(const FluxMeasurement& measurement, const std::optional<Pho
       return MeanError{share.mean * factor, share.standard_error * factor};
     });
   for (size_t band = 0; band < bands; ++band)
-    add_measured(fmt::format("absorbed_{:g}", measurement.wavelengths_nm[band]),
+    add_measured(column_of(measurement.bands[band]),
                  [&](size_t i) { return measurement.by_instance[i * bands + band]; });
   return table;
 }
@@ -188,23 +193,26 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
 
 /// The value of --irradiance for that of the scene's lights.
 constexpr std::string_view kOfScene = "scene";
+/// Light of photons, which need a unit, unless --irradiance names another.
+constexpr std::string_view kOfPhotons = "solar-am1.5-global";
 
-/// Returns the spectrum that --irradiance names; nullptr for that of the scene. Throws InputError for a relative one.
+/// Returns the spectrum that --irradiance names; nullptr if it is not given, and for that of the scene.
 SpectrumPtr named_irradiance(const JobRun& run) {
   const std::string light = run.args.text("irradiance");
-  if (light == kOfScene) return nullptr;
-  const auto names = spectrum_names();
-  if (std::ranges::find(names, light) == names.end() && is_spectrum_file(light, light)) return read_spd(light, {});
-  SpectrumPtr spectrum = named_spectrum(light, {});
-  if (!light.starts_with("solar-"))
-    fail({}, "{}: \"{}\" is not in W/(m2 nm): an .spd file in this unit is needed, or one of the spectra solar-*",
-         run.args.spelled("irradiance"), light);
-  return spectrum;
+  if (light.empty() || light == kOfScene) return nullptr;
+  return named_or_read_spectrum(light, light, {});
 }
 
-/// Throws InputError for lights whose spectrum is scaled to a luminance, so that it has no physical unit.
+/// Throws InputError unless --irradiance is in W/(m2 nm). The light sky alone keeps the unit of its data; its
+/// illuminance has none either.
 void check_physical(const SceneDescription& description, const JobRun& run) {
-  // The light sky alone keeps the unit of its data; its illuminance, of luminance 1, has no unit either.
+  const std::string name = run.args.text("irradiance");
+  if (name != kOfScene) {
+    if (!name.empty() && !is_spectrum_file(name, name) && !name.starts_with("solar-"))
+      fail({}, "{}: \"{}\" is not in W/(m2 nm): a file in this unit is needed, or one of the spectra solar-*",
+           run.args.spelled("irradiance"), name);
+    return;
+  }
   for (const auto& [light, _] : description.lights) {
     const ParsedParam* scaled = find_param(light.params, "illuminance");
     if (light.name != "sky" || scaled)
@@ -215,22 +223,47 @@ void check_physical(const SceneDescription& description, const JobRun& run) {
   }
 }
 
-/// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm. `irradiance`:
-/// nullptr for that of the scene.
-std::optional<PhotonWeights> photon_weights(const FluxMeter& meter, const SpectrumPtr& irradiance) {
-  std::vector<double> nm;
-  std::vector<SpectrumPoint> points;
-  for (const Band& band : meter.scene().wavelengths().bands()) {
-    nm.push_back(band.nm);
-    points.push_back({band.nm, meter.irradiance()[points.size()]});
-  }
-  if (!irradiance && points.size() < 2) return {};
-  return PhotonWeights::of(nm, irradiance ? *irradiance : *make_tabulated(points));
+/// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm. Throws as
+/// check_physical does. `irradiance`: as named_irradiance returns it.
+std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescription& description,
+                                            const FluxMeter& meter, const SpectrumPtr& irradiance) {
+  const auto bands = meter.scene().wavelengths().bands();
+  if (!PhotonWeights::are_covered_by(bands)) return {};
+  check_physical(description, run);
+  if (irradiance) return PhotonWeights::of(bands, *irradiance);
+  if (run.args.text("irradiance") == kOfScene)
+    return PhotonWeights::of(bands, *horizontal_irradiance(meter.scene(), {400, 700}));
+  return PhotonWeights::of(bands, *named_spectrum(kOfPhotons, {}));
+}
+
+/// Says why there are no photons, and if --irradiance is given, that it has no effect.
+void explain_no_photons(const JobRun& run, std::span<const Band> bands) {
+  if (!bands.front().response.empty()) return;
+  const std::string needed =
+      fmt::format("no PAR: bands from 400 to 700 nm are needed, in steps of at most 50 nm ({} 400:700:20)",
+                  run.args.spelled("wavelengths"));
+  if (run.args.given("irradiance"))
+    run.log().warn({},
+                   fmt::format("{} has no effect on single wavelengths; {}", run.args.spelled("irradiance"), needed));
+  else
+    run.log().info(needed);
+}
+
+/// Warns of materials that no path met.
+void warn_of_unmet(const JobRun& run, const FluxMeasurement& measurement) {
+  std::vector<std::string> unmet;
+  for (const FluxMeasurement::OfMaterial& m : measurement.materials)
+    if (!m.is_met) unmet.push_back('"' + m.name + '"');
+  if (!unmet.empty())
+    run.log().warn({},
+                   fmt::format("no path met the material{} {}: {} shares are unknown; raise {}, or give a smaller {}",
+                               unmet.size() > 1 ? "s" : "", fmt::join(unmet, ", "), unmet.size() > 1 ? "their" : "its",
+                               run.args.spelled(run.args.given("rms") ? "rms" : "paths"), run.args.spelled("target")));
 }
 
 /// Returns the table of instances. It is printed as CSV unless a file is written, because it may be long.
 Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
-  const size_t bands = measurement.wavelengths_nm.size(), count = measurement.areas.size();
+  const size_t bands = measurement.bands.size(), count = measurement.areas.size();
   // An error is unknown in the bands of which no path was absorbed.
   size_t unmet = 0;
   for (size_t i = 0; i < count; ++i)
@@ -255,28 +288,26 @@ Result flux(const JobRun& run) {
   if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
   const SpectrumPtr irradiance = named_irradiance(run);
   const bool is_by_instance = run.args.text("by") == "instance";
+  if (!is_by_instance) warn_if_nothing_is_kept(run);
   const FluxRequest request{.target = target_of(run.args),
                             .period = period_of(run.args),
                             .wavelengths = wavelengths_text(run.args),
+                            .irradiance = irradiance,
+                            .irradiance_name = run.args.text("irradiance"),
                             .by_instance = is_by_instance};
   const RenderControl control = run.control_until(run.args.real("time-limit"));
+  std::optional<PhotonWeights> photons;
   const auto load = [&] {
-    SceneDescription description = described_scene(run);
-    if (!irradiance) check_physical(description, run);
-    return std::make_unique<FluxMeter>(run.session(), std::move(description), request);
+    const SceneDescription description = described_scene(run);
+    auto made = std::make_unique<FluxMeter>(run.session(), description, request);
+    photons = photon_weights(run, description, *made, irradiance);
+    return made;
   };
   const auto loaded = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
   FluxMeter& meter = *loaded;
+  const auto bands = meter.scene().wavelengths().bands();
+  if (!photons) explain_no_photons(run, bands);
   run.context.log().check();
-  const auto photons = photon_weights(meter, irradiance);
-  // The default wavelengths have no PAR, so that this is an error only where photons are asked for.
-  if (!photons) {
-    const std::string needed =
-        fmt::format("no PAR: bands from 400 to 700 nm are needed, in steps of at most 50 nm ({} 400:700:20)",
-                    run.args.spelled("wavelengths"));
-    if (run.args.given("irradiance")) fail({}, "{}: {}", run.args.spelled("irradiance"), needed);
-    run.log().info(needed);
-  }
   auto measured = measure(run, control, meter, kept ? &*kept : nullptr);
   if (!measured) {
     if (kept) kept->report_stop();
@@ -284,13 +315,21 @@ Result flux(const JobRun& run) {
   }
   FluxMeasurement& measurement = *measured;
   const double error = measurement.error();
+  warn_of_unmet(run, measurement);
+  const bool are_weighted = !bands.front().response.empty();
+  const std::string light =
+      run.args.given("irradiance") ? run.args.text("irradiance") : std::string(are_weighted ? kOfScene : kOfPhotons);
   Result result =
       is_by_instance ? by_instance(run, measurement, photons) : Result{.text = share_text(measurement, photons)};
   result.tables.push_back(share_table(measurement, photons));
   result.facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}};
   if (photons) result.facts.push_back({"par_umol_m2_s", photons->incident});
-  run.log().info(fmt::format("{} paths; RMS standard error {:.2g}{}", measurement.paths, error,
-                             photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s)", photons->incident) : ""));
+  if (photons || are_weighted) result.facts.push_back({"irradiance", light});
+  run.log().info(
+      fmt::format("{} paths; RMS standard error {:.2g}{}", measurement.paths, error,
+                  photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s), irradiance {}", photons->incident, light)
+                  : are_weighted ? fmt::format("; bands are weighted by the irradiance {}", light)
+                                 : ""));
   warn_of_time_limit(run, measurement.paths, error);
   return result;
 }
@@ -301,7 +340,8 @@ extern const JobInfo kFluxJob("flux", "Measure",
                               "Measure the light budget of a scene: reflection, transmission, absorption.",
                               "Reports shares of the incident light by wavelength: reflected, transmitted, and "
                               "absorbed by each material. With wavelengths from 400 to 700 nm, also shares "
-                              "of the photons (PAR).",
+                              "of the photons (PAR). The share of a band with a response is that of the light under "
+                              "it: the mean weighted by response times irradiance.",
                               kParams, SessionUse::all, flux);
 
 }  // namespace frond

@@ -22,12 +22,14 @@ constexpr JobParam kParams[] = {
     kInstrumentWavelengthsParam,
     kAnglesParam,
     kWithParam,
+    kIlluminantParam,
     JobParam("rays", count, "Number of rays for each measurement.",
              {.default_value = "1e6", .range = kRayCounts, .decides = true}),
     JobParam("patches", text, "THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere.",
              {.type = "THETAxPHI", .default_value = "20x40", .decides = true}),
     JobParam("integrate", flag,
-             "Integrate f over each patch, without noise, if the material evaluates f exactly; otherwise use rays.",
+             "Integrate f over each patch, without noise, if the material evaluates f exactly and the light is of one "
+             "wavelength; otherwise use rays.",
              {.decides = true}),
     kRenderedParam,
     kSeedParam,
@@ -59,7 +61,7 @@ Table table_of(const std::vector<LabelledPatches>& measurements) {
     for (size_t i = 0; i < r.sphere.size(); ++i) {
       const Patch p = r.sphere.patch(i);
       table.add("incidence_deg", r.beam.theta_deg);
-      table.add("wavelength_nm", r.beam.lambda_nm);
+      add_light(table, r.beam);
       table.add("theta_min_deg", p.theta_min_deg);
       table.add("theta_max_deg", p.theta_max_deg);
       table.add("theta_deg", p.theta_deg());
@@ -101,7 +103,7 @@ Table summary_of(const std::vector<LabelledPatches>& measurements) {
       const Estimate share = r.share(reflected), f = r.f(largest);
       table.add("material", material);
       table.add("incidence_deg", r.beam.theta_deg);
-      table.add("wavelength_nm", r.beam.lambda_nm);
+      add_light(table, r.beam);
       table.add("measured_by", r.is_integrated() ? std::string("integration") : fmt::format("{} rays", r.rays));
       table.add("kind", kind_of(r, p));
       table.add("share", share.mean, share.standard_error());
@@ -114,7 +116,7 @@ Table summary_of(const std::vector<LabelledPatches>& measurements) {
 
 /// Throws InputError for requests that would fail after the measurements.
 void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSphere& sphere) {
-  const MeasurementCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size()};
+  const MeasurementCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.lights().size()};
   if (run.args.given("plot")) check_plane_chart(counts, sphere);
   if (run.args.given("map")) check_map_chart(counts, sphere);
   for (size_t i = 0; i < tested.size(); ++i) check_no_delta_lobe(tested.lit_material(i));
@@ -125,7 +127,8 @@ GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& 
                                    const DetectorSphere& sphere) {
   run.check_stop();
   const LitMaterial lit = tested.lit_material(i);
-  if (run.args.flag("integrate") && has_exact_f(lit)) return integrate_f(lit, sphere, run.session().pool());
+  if (run.args.flag("integrate") && has_exact_f(lit) && !lit.beam.band)
+    return integrate_f(lit, sphere, run.session().pool());
   const int64_t rays = run.args.count("rays");
   return measure_f(lit, sphere, rays, run.session().pool(), tested.progress(i, rays));
 }
@@ -133,6 +136,7 @@ GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& 
 /// The job. Charts are checked before the first ray.
 Result goniophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
+  warn_if_nothing_is_kept(run);
   check_chart_param(run, "map");
   const DetectorSphere sphere = sphere_of(run.args);
   const MaterialsUnderTest tested(run);
@@ -145,10 +149,10 @@ Result goniophotometer(const JobRun& run) {
   if (run.args.given("map"))
     write_chart(run.args.text("map"), map_chart(measurements, run.args.text("map-scale") == "log"));
   const Table summary = summary_of(measurements);
-  return {
-      .tables = {table_of(measurements), summary},
-      .notes = tested.notes("goniophotometer"),
-      .text = fmt::format("{} x {} patches; where f is largest\n{}", sphere.thetas(), sphere.phis(), to_text(summary))};
+  return {.tables = {table_of(measurements), summary},
+          .notes = tested.notes("goniophotometer"),
+          .text = fmt::format("{} x {} patches; where f is largest\n{}{}", sphere.thetas(), sphere.phis(),
+                              to_text(summary), tested.illuminant_text())};
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ constexpr JobParam kParams[] = {
     kInstrumentWavelengthsParam,
     kAnglesParam,
     kWithParam,
+    kIlluminantParam,
     JobParam("rays", count,
              "Number of rays for each measurement, by default 1e6; with --se the maximum, by default 1e9.",
              {.range = kRayCounts, .decides = true}),
@@ -50,7 +51,7 @@ Table table_of(std::span<const LabelledMeasurement> measurements) {
   for (const LabelledMeasurement& measurement : measurements) {
     const auto& [material, r] = measurement;
     table.add("theta_deg", r.beam.theta_deg);
-    table.add("wavelength_nm", r.beam.lambda_nm);
+    add_light(table, r.beam);
     const auto is_known = [&, tells_surface = r.tells_surface](const Share& s) {
       return !s.is_optional || tells_surface;
     };
@@ -94,13 +95,14 @@ void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vect
 /// The job. The chart is checked before the first ray.
 Result spectrophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
+  warn_if_nothing_is_kept(run);
   // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;
   const int64_t by_default = run.args.given("se") ? kMostRays : kRays;
   const Dose dose{run.args.given("rays") ? run.args.count("rays") : by_default, run.args.real("se")};
   const MaterialsUnderTest tested(run);
   if (run.args.given("plot"))
-    check_shares_chart(tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size());
+    check_shares_chart(tested.materials().size(), tested.angles_deg().size(), tested.lights().size());
   std::vector<LabelledMeasurement> measurements;
   for (size_t i = 0; i < tested.size(); ++i)
     measurements.push_back(
@@ -111,7 +113,7 @@ Result spectrophotometer(const JobRun& run) {
   if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(measurements));
   return {.tables = {table_of(measurements)},
           .notes = tested.notes("spectrophotometer"),
-          .text = text_of(measurements, tested.per_material())};
+          .text = text_of(measurements, tested.per_material()) + tested.illuminant_text()};
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
     fail({}, "{} directions of view: {} is the limit", request.views.size(), kMostViews);
   const LoadedScene first = session.load(description, {}, other);
   const Scene& scene = first.scene();
-  const Target target = request.target ? *request.target : default_target(scene);
+  // The first of several scenes of one geometry has warned.
+  const Target target = request.target ? *request.target : default_target(scene, other ? silent_log() : session.log());
   check_target(scene, target);
   const std::optional<Vec3> sun = direction_to_sun(scene.lights());
   description.camera = camera_of(request, target, scene, sun);
@@ -108,10 +109,11 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
 }
 
 BrfMeasurement BrfMeter::read(const Film& film) const {
-  BrfMeasurement measurement{.views = request_.views, .wavelengths_nm = {}, .values = {}, .rows = {}};
+  BrfMeasurement measurement{.views = request_.views, .bands = {}, .values = {}, .rows = {}};
   measurement.has_heavy_tails = has_heavy_tails_;
   if (is_hemispherical_) measurement.quantity = "HDRF";
-  for (const Band& band : scene_.scene().wavelengths().bands()) measurement.wavelengths_nm.push_back(band.nm);
+  const auto bands = scene_.scene().wavelengths().bands();
+  measurement.bands.assign(bands.begin(), bands.end());
   for (int view = 0; view < film.settings().width; ++view)
     for (size_t band = 0; band < film.bands(); ++band) {
       double sum = 0, squares = 0;

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/wavelengths.h"
 #include "instruments/errors/statistics.h"
 #include "render/session.h"
 
@@ -32,7 +33,7 @@ struct BrfRequest {
 /// light. Terms: Schaepman-Strub et al. 2006, Remote Sensing of Environment 103:27-42.
 struct BrfMeasurement {
   std::vector<ViewDirection> views;
-  std::vector<double> wavelengths_nm;
+  std::vector<Band> bands;
   std::vector<MeanError> values;  ///< by view, then band
   std::vector<double> rows;       ///< for each value, BrfMeter::kRows independent estimates
   uint64_t paths = 0;             ///< for each view
@@ -41,7 +42,7 @@ struct BrfMeasurement {
   std::string_view quantity = "BRF";
   /// True if standard errors are unreliable, because a few rare paths contribute much of the mean.
   bool has_heavy_tails = false;
-  const MeanError& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
+  const MeanError& at(size_t view, size_t band) const { return values[view * bands.size() + band]; }
   /// Returns the RMS over views and bands of the standard errors relative to their means.
   double relative_error() const;
 };

@@ -46,7 +46,7 @@ BrfVerdict judge(const BrfMeasurement& reference, const BrfMeasurement& measurem
                       : beyond                  ? BrfVerdict::Answer::not_enough
                       : upper(*worst) <= within ? BrfVerdict::Answer::enough
                                                 : BrfVerdict::Answer::unknown;
-  const size_t bands = measurement.wavelengths_nm.size();
+  const size_t bands = measurement.bands.size();
   return {answer, place / bands, place % bands, *worst, upper(*worst)};
 }
 

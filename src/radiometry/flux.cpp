@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "core/stop.h"
-#include "radiometry/horizontal_irradiance.h"
+#include "radiometry/lit_bands.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/sums_file.h"
 #include "system/machine.h"
@@ -100,8 +100,9 @@ class InstanceSums {
 /// Samples the incident light: a direction of one of the lights, and a weight.
 class Incoming {
  public:
-  explicit Incoming(const LoadedScene& loaded) : lights_(loaded.scene().lights()), irradiance_(loaded) {
-    const SampledWavelengths lambda = loaded.scene().wavelengths().sample(0.5f);
+  /// `lambda`: wavelengths at which the scene has light.
+  Incoming(const Scene& scene, HorizontalIrradiance irradiance, const SampledWavelengths& lambda)
+      : lights_(scene.lights()), irradiance_(std::move(irradiance)) {
     for (const Light* light : lights_) {
       const auto* sky = dynamic_cast<const EnvironmentLight*>(light);
       evenly_.push_back(sky && varies_less_by_cosine(*light, lambda) ? sky : nullptr);
@@ -122,11 +123,9 @@ class Incoming {
     Lanes weight;
     const Lanes irradiance = irradiance_.at(lambda);
     for (int lane = 0; lane < lambda.count; ++lane)
-      weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
+      if (irradiance[lane] > 0) weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
     return Sample{s->direction, weight};
   }
-  /// In each band.
-  const std::vector<double>& irradiance() const { return irradiance_.bands(); }
 
  private:
   /// Cosine below which light is left out: its ray would begin far from the scene, or nowhere. Of a uniform sky this is
@@ -168,6 +167,18 @@ class Incoming {
   HorizontalIrradiance irradiance_;
 };
 
+/// Returns the materials of surfaces, without those that have none, as "interface".
+std::vector<uint32_t> reflectors_of(const Scene& scene) {
+  const SampledWavelengths lambda = scene.wavelengths().sample(0.5f);
+  const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}, {}}};
+  std::vector<uint32_t> materials = scene.geometry().materials();
+  std::erase_if(materials, [&](uint32_t m) {
+    Arena arena;
+    return !scene.material(m) || !scene.material(m)->evaluate(hit, lambda, arena);
+  });
+  return materials;
+}
+
 Lanes remainder(const Lanes& weight) {
   Lanes rest;
   for (int lane = 0; lane < kLanes; ++lane) rest[lane] = 1 - weight[lane];
@@ -180,9 +191,11 @@ struct FluxMeter::State {
   LoadedScene loaded;
   Target target;
   Incoming incoming;
+  LitBands wavelengths;
   size_t materials, bands;
-  std::vector<Moment> moments = {};  ///< by quantity and band
-  std::vector<uint64_t> seen = {};   ///< number of paths, by band
+  std::vector<uint32_t> reflectors = {};  ///< indices of the materials of surfaces that light can meet
+  std::vector<Moment> moments = {};       ///< by quantity and band
+  std::vector<uint64_t> seen = {};        ///< number of paths, by band
   std::unique_ptr<InstanceSums> by_instance = {};
   uint64_t paths = 0;
 
@@ -212,7 +225,7 @@ class FluxMeter::Sums {
     for (uint64_t i = first; i < first + count; ++i) {
       if (i % kPolled == 0) check_stop();
       RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
-      const SampledWavelengths lambda = wavelengths.sample_in_turn(i, random.uniform());
+      const SampledWavelengths lambda = state_.wavelengths.sample_in_turn(i, random.uniform());
       record_.clear();
       follow(lambda, hash_key(state_.scene().seed(), uint64_t{kKeys}, i), random);
       for (size_t q = 0; q < record_.values().size(); ++q) {
@@ -320,15 +333,20 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
     fail(description.media.front().plugin.where,
          "flux does not trace participating media; brf and render do, by integrator \"volpath\"");
   prepare_for_radiometry(session.registry(), request.wavelengths, request.period, false, description);
-  const char* what = request.by_instance ? "flux by instance" : "flux";
+  std::string what = request.by_instance ? "flux by instance" : "flux";
+  if (request.irradiance) what += " irradiance " + request.irradiance_name;
   LoadedScene loaded =
       session.load(std::move(description), {.command = measurement_text(what, request.target, request.period)});
   const Scene& scene = loaded.scene();
-  const Target target = request.target ? *request.target : default_target(scene);
+  const Target target = request.target ? *request.target : default_target(scene, session.log());
   check_target(scene, target);
-  Incoming incoming(loaded);
+  HorizontalIrradiance irradiance(loaded);
+  LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance);
+  Incoming incoming(scene, std::move(irradiance), wavelengths.sample_in_turn(0, 0.5f));
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
-  state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(incoming), materials, bands});
+  state_ = std::make_unique<State>(
+      State{std::move(loaded), target, std::move(incoming), std::move(wavelengths), materials, bands});
+  state_->reflectors = reflectors_of(state_->scene());
   state_->moments.resize(state_->quantities() * bands);
   state_->seen.resize(bands);
   if (!request.by_instance) return;
@@ -343,7 +361,6 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
 FluxMeter::~FluxMeter() = default;
 
 const Scene& FluxMeter::scene() const { return state_->scene(); }
-const std::vector<double>& FluxMeter::irradiance() const { return state_->incoming.irradiance(); }
 
 void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control,
                       const std::function<void()>& after_round) {
@@ -407,7 +424,7 @@ FluxMeasurement FluxMeter::read() const {
       result.push_back(s.moments[quantity * s.bands + band].share(s.seen[band]));
     return result;
   };
-  FluxMeasurement measurement{.wavelengths_nm = {},
+  FluxMeasurement measurement{.bands = {},
                               .reflected = shares(kReflected),
                               .transmitted = shares(kTransmitted),
                               .materials = {},
@@ -416,14 +433,18 @@ FluxMeasurement FluxMeter::read() const {
                               .target_area = (s.target.x1 - s.target.x0) * (s.target.y1 - s.target.y0),
                               .by_instance = {},
                               .areas = {}};
-  for (const Band& band : s.scene().wavelengths().bands()) measurement.wavelengths_nm.push_back(band.nm);
-  for (uint32_t m = 0; m < s.materials; ++m) {
+  const auto bands = s.scene().wavelengths().bands();
+  measurement.bands.assign(bands.begin(), bands.end());
+  for (const uint32_t m : s.reflectors) {
     const MaterialDescription& material = s.loaded.description().materials[m];
     FluxMeasurement::OfMaterial one{
         material.name.empty() ? material.plugin.name : material.name, shares(PathRecord::of_material(m, kAbsorbed)),
         shares(PathRecord::of_material(m, kIncident)), shares(PathRecord::of_material(m, kUncollided))};
-    if (std::ranges::any_of(one.incident, [](const MeanError& share) { return share.mean > 0; }))
-      measurement.materials.push_back(std::move(one));
+    one.is_met = std::ranges::any_of(one.incident, [](const MeanError& share) { return share.mean > 0; });
+    if (!one.is_met)
+      for (auto* of_material : {&one.absorbed, &one.incident, &one.uncollided})
+        for (MeanError& share : *of_material) share.standard_error = NAN;
+    measurement.materials.push_back(std::move(one));
   }
   if (!s.by_instance) return measurement;
   measurement.areas = s.scene().geometry().areas();
@@ -443,7 +464,8 @@ double FluxMeasurement::error() const {
     for (const MeanError& s : shares) squares += s.standard_error * s.standard_error, ++count;
   };
   add(reflected);
-  for (const OfMaterial& m : materials) add(m.absorbed);
+  for (const OfMaterial& m : materials)
+    if (m.is_met) add(m.absorbed);
   return count == 0 ? 0 : std::sqrt(squares / double(count));
 }
 

@@ -17,7 +17,10 @@ struct FluxRequest {
   std::optional<Target> target = {};                 ///< as in BrfRequest
   std::optional<std::array<double, 2>> period = {};  ///< replaces the scene's period
   std::string wavelengths = {};                      ///< a PluginText of `bands`
-  bool by_instance = false;                          ///< also measure the absorption of each instance
+  /// Spectral irradiance, of any unit, by which bands with responses are weighted; nullptr: that of the scene's lights.
+  SpectrumPtr irradiance = {};
+  std::string irradiance_name = {};  ///< identifies `irradiance`
+  bool by_instance = false;          ///< also measure the absorption of each instance
 };
 
 /// Light budget by band: shares of the light that enters through the target.
@@ -27,11 +30,12 @@ struct FluxMeasurement {
     std::vector<MeanError> absorbed;    ///< by its surfaces
     std::vector<MeanError> incident;    ///< light on either side; repeated incidence counts each time
     std::vector<MeanError> uncollided;  ///< the share of `incident` without an earlier interaction
+    bool is_met = true;                 ///< by any path; else the shares are 0 with an unknown error, NaN
   };
-  std::vector<double> wavelengths_nm;
+  std::vector<Band> bands;
   std::vector<MeanError> reflected;    ///< leaves upward
   std::vector<MeanError> transmitted;  ///< leaves downward, if there is no ground below
-  std::vector<OfMaterial> materials;   ///< materials that received light
+  std::vector<OfMaterial> materials;   ///< materials of surfaces
   std::vector<MeanError> sum;          ///< sum of all absorbed and leaving light: 1 up to noise
   uint64_t paths = 0;
   double target_area = 0;  ///< in scene units squared
@@ -63,8 +67,6 @@ class FluxMeter {
   /// of another measurement, or a truncated or damaged file.
   void resume(const std::filesystem::path& path);
   const Scene& scene() const;
-  /// Irradiance of a horizontal plane above the scene, in each band. Unit: unit of the lights' radiance, times sr.
-  const std::vector<double>& irradiance() const;
 
  private:
   class Sums;

@@ -4,6 +4,10 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "spectra/spectrum_points.h"
+#include "spectra/tabulated.h"
+#include "spectra/wavelengths/band_label.h"
+#include "spectra/wavelengths/response_sampler.h"
 
 namespace frond {
 namespace {
@@ -30,10 +34,11 @@ float radical_inverse(uint32_t i) {
   return float(i >> 8) * 0x1p-24f;
 }
 
-/// Returns the irradiance of one light on the plane.
-std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengths& lambda, int directions) {
+/// Returns the irradiance of one light on the plane at up to kLanes wavelengths.
+std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengths& lambda) {
+  constexpr int kDirections = 1 << 16;
   std::array<double, kLanes> sum{};
-  const int count = light.is_delta() ? 1 : directions;
+  const int count = light.is_delta() ? 1 : kDirections;
   for (int i = 0; i < count; ++i) {
     const Vec2 u{(float(i) + 0.5f) / float(count), radical_inverse(uint32_t(i))};
     const auto s = light.sample({}, u, lambda);
@@ -41,6 +46,31 @@ std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengt
     for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += double(s->radiance.v[lane] * s->wi.z / s->pdf) / count;
   }
   return sum;
+}
+
+/// Returns the irradiance of one light on the plane at each wavelength.
+std::vector<double> irradiance(const Light& light, std::span<const double> nm) {
+  std::vector<double> values;
+  for (size_t begin = 0; begin < nm.size(); begin += kLanes) {
+    const SampledWavelengths lambda = lanes_at(nm.subspan(begin));
+    const auto four = irradiance(light, lambda);
+    values.insert(values.end(), four.begin(), four.begin() + lambda.count);
+  }
+  return values;
+}
+
+/// Returns wavelengths between which the spectra of all lights are linear, or smooth.
+std::vector<double> points_nm(std::span<const Light* const> lights, Interval range_nm) {
+  std::vector<double> nm;
+  for (const Light* light : lights) append_points_nm(light->emission(), nm);
+  complete_points_nm(range_nm, nm);
+  return nm;
+}
+
+SpectrumPtr spectrum_of(std::span<const double> nm, std::span<const double> values) {
+  std::vector<SpectrumPoint> points;
+  for (size_t i = 0; i < nm.size(); ++i) points.push_back({nm[i], values[i]});
+  return std::make_shared<TabulatedSpectrum>(points);
 }
 
 /// Throws InputError, which names the light, unless all lights are outside the scene.
@@ -59,50 +89,38 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded) {
   const auto lights = loaded.scene().lights();
   const WavelengthStrategy& wavelengths = loaded.scene().wavelengths();
   const auto listed = wavelengths.listed_nm();
-  if (listed.empty()) {
-    const Interval range = wavelengths.range_nm();
-    for (double nm = std::floor(range.min); nm <= std::ceil(range.max); ++nm) nm_.push_back(nm);
-  } else {
-    nm_.assign(listed.begin(), listed.end());
+  const Interval range = wavelengths.range_nm();
+  nm_ = listed.empty() ? points_nm(lights, {std::floor(range.min), std::ceil(range.max)})
+                       : std::vector<double>(listed.begin(), listed.end());
+  values_.resize(nm_.size());
+  std::vector<std::vector<double>> each;
+  for (const Light* light : lights) {
+    each.push_back(irradiance(*light, nm_));
+    for (size_t i = 0; i < nm_.size(); ++i) values_[i] += each.back()[i];
   }
-  shares_.resize(lights.size());
-  for (size_t begin = 0; begin < nm_.size(); begin += kLanes) {
-    const SampledWavelengths lambda = lanes_at(std::span(nm_).subspan(begin));
-    std::array<double, kLanes> sum{};
-    std::vector<std::array<double, kLanes>> each;
-    for (const Light* light : lights) {
-      each.push_back(irradiance(*light, lambda, kDirections));
-      for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += each.back()[lane];
-    }
-    for (size_t i = 0; i < each.size(); ++i)
-      for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
-        if (sum[lane] > 0) shares_[i] += each[i][lane] / sum[lane] / double(nm_.size());
-    values_.insert(values_.end(), sum.begin(), sum.begin() + lambda.count);
+  const auto lit = std::ranges::count_if(values_, [](double value) { return value > 0; });
+  for (const auto& of_light : each) {
+    double& share = shares_.emplace_back();
+    for (size_t i = 0; i < nm_.size(); ++i)
+      if (values_[i] > 0) share += of_light[i] / values_[i] / double(lit);
   }
-  for (size_t i = 0; i < nm_.size(); ++i)
-    if (!(values_[i] > 0))
+  if (listed.empty()) spectrum_ = spectrum_of(nm_, values_);
+  for (const Band& band : wavelengths.bands()) {
+    bands_.push_back(band.response.empty() ? at(double(float(band.nm))) : mean_under(band.response, *spectrum_));
+    if (!(bands_.back() > 0))
       fail(loaded.description().lights.empty() ? Location{} : loaded.description().lights[0].plugin.where,
-           "no light falls on the scene from above, from +z, at {:g} nm", nm_[i]);
-  sum_bands(wavelengths);
+           "no light falls on the scene from above, from +z, {}", place_of(band));
+  }
 }
 
-void HorizontalIrradiance::sum_bands(const WavelengthStrategy& wavelengths) {
-  const size_t count = wavelengths.bands().size();
-  if (!wavelengths.listed_nm().empty()) {
-    bands_ = values_;
-    return;
+SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm) {
+  const std::vector<double> points = points_nm(scene.lights(), nm);
+  std::vector<double> values(points.size());
+  for (const Light* light : scene.lights()) {
+    const std::vector<double> of_light = irradiance(*light, points);
+    for (size_t i = 0; i < points.size(); ++i) values[i] += of_light[i];
   }
-  constexpr size_t kPaths = 4096;  // paths for each band
-  std::vector<double> sum(count), seen(count);
-  for (size_t i = 0; i < kPaths * count; ++i) {
-    const size_t turn = i / count;
-    const float u = (float(turn) + 0.5f) / float(kPaths);
-    const SampledWavelengths lambda = wavelengths.sample_in_turn(i, u);
-    const SensorResponse response = wavelengths.sensor(at(lambda), lambda);
-    for (size_t k = 0; k < size_t(response.count); ++k)
-      sum[response.channel[k]] += response.value[k], ++seen[response.channel[k]];
-  }
-  for (size_t b = 0; b < count; ++b) bands_.push_back(sum[b] / seen[b]);
+  return spectrum_of(points, values);
 }
 
 SampledSpectrum HorizontalIrradiance::at(const SampledWavelengths& lambda) const {

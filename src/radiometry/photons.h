@@ -5,17 +5,22 @@
 #include <vector>
 
 #include "core/spectrum.h"
+#include "core/wavelengths.h"
 
 namespace frond {
 
 /// Photosynthetically active radiation (PAR), 400 to 700 nm: converts shares of light by band to shares of photons.
 struct PhotonWeights {
-  std::vector<double> weights;  ///< by band, by the trapezoid rule; they sum to 1
+  std::vector<double> weights;  ///< by band; they sum to 1
   double incident = 0;          ///< incident photon flux density, umol m^-2 s^-1
 
-  /// `irradiance`: on a horizontal plane, W m^-2 nm^-1. Returns nullopt if the ascending bands do not cover 400 to 700
-  /// nm, to within 10 nm, in steps of at most 50 nm.
-  static std::optional<PhotonWeights> of(std::span<const double> bands_nm, const Spectrum& irradiance);
+  /// `irradiance`: on a horizontal plane, W m^-2 nm^-1. It is integrated over its own points; shares are taken as
+  /// linear between the bands. Returns nullopt unless the bands, in any order, are single wavelengths that cover 400 to
+  /// 700 nm, to within 10 nm, in steps of at most 50 nm. Throws InputError for an irradiance that is unknown or 0
+  /// there.
+  static std::optional<PhotonWeights> of(std::span<const Band> bands, const Spectrum& irradiance);
+  /// Returns whether `of` returns weights.
+  static bool are_covered_by(std::span<const Band> bands);
 };
 
 }  // namespace frond

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/log.h"
 #include "scene/format/plugin_text.h"
@@ -24,6 +25,34 @@ std::string_view model_of(const ParsedPlugin& plugin) {
   const auto* words = model ? std::get_if<std::vector<std::string>>(&model->values) : nullptr;
   if (words && words->size() == 1) return words->front();
   return plugin.name;
+}
+
+double horizontal_area(const Bounds& b) { return double(b.max.x - b.min.x) * double(b.max.y - b.min.y); }
+
+/// Index of the largest surface by horizontal extent, if it is flat; nullopt if it is not, or if there is none.
+std::optional<size_t> largest_flat_surface(const Geometry& geometry) {
+  std::optional<size_t> largest;
+  double area = 0;
+  for (size_t i = 0; i < geometry.surfaces().size(); ++i)
+    if (const double own = horizontal_area(geometry.bounds_of(i)); own > area) largest = i, area = own;
+  if (!largest) return {};
+  constexpr float kFlat = 0.05f;  // height over width: with the relief of a field
+  const Bounds b = geometry.bounds_of(*largest);
+  return b.max.z - b.min.z <= kFlat * std::max(b.max.x - b.min.x, b.max.y - b.min.y) ? largest : std::nullopt;
+}
+
+/// Warns if all but the ground covers less than half of the target, which is the whole scene.
+void warn_of_empty_ground(const Geometry& geometry, const Target& target, const Log& log) {
+  constexpr double kMostly = 0.5;
+  const auto ground = largest_flat_surface(geometry);
+  if (!ground) return;
+  const Bounds rest = geometry.bounds_without(*ground);
+  if (rest.is_empty() || geometry.bounds_of(*ground).max.z > rest.max.z) return;
+  const double share = horizontal_area(rest) / ((target.x1 - target.x0) * (target.y1 - target.y0));
+  if (!(share > 0 && share < kMostly)) return;
+  log.warn({}, fmt::format("the target is the whole scene, by default, and all but the ground covers {:.2g} % of it: "
+                           "--target {},{},{},{},{} measures that",
+                           100 * share, rest.min.x, rest.max.x, rest.min.y, rest.max.y, rest.max.z));
 }
 
 }  // namespace
@@ -68,7 +97,7 @@ std::string measurement_text(const std::string& what, const std::optional<Target
   return text;
 }
 
-Target default_target(const Scene& scene) {
+Target default_target(const Scene& scene, const Log& log) {
   const Bounds b = scene.geometry().bounds();
   if (b.is_empty()) fail({}, "nothing stands in this scene: there is nothing to look at");
   Target target{double(b.min.x), double(b.max.x), double(b.min.y), double(b.max.y), double(b.max.z)};
@@ -78,6 +107,7 @@ Target default_target(const Scene& scene) {
   }
   if (!(target.x0 < target.x1 && target.y0 < target.y1))
     fail({}, "the scene has no horizontal extent: give --target x0,x1,y0,y1,z");
+  if (!scene.period()) warn_of_empty_ground(scene.geometry(), target, log);
   return target;
 }
 

@@ -23,8 +23,9 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,
                              const std::optional<std::array<double, 2>>& period);
 
-/// Returns one period, or the scene's bounds, at the scene's top.
-Target default_target(const Scene& scene);
+/// Returns one period, or the scene's bounds, at the scene's top. Warns if these bounds are mostly empty ground, with
+/// the rectangle around all else.
+Target default_target(const Scene& scene, const Log& log);
 /// Throws InputError for a target too far away for Embree, or beside the bounds of a scene that is not periodic.
 void check_target(const Scene& scene, const Target& target);
 

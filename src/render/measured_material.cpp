@@ -1,7 +1,6 @@
 #include "render/measured_material.h"
 
 #include "core/log.h"
-#include "instruments/beam.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "scene/resolver.h"
@@ -38,10 +37,23 @@ std::shared_ptr<Material> ready_material(const std::string& text, const Registry
 MeasuredMaterial::MeasuredMaterial(const std::string& text, const Registry& registry,
                                    const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
                                    const std::filesystem::path& cache_dir)
+    : MeasuredMaterial(
+          text, registry,
+          [&] {
+            std::vector<Beam> beams;
+            for (const double nm : wavelengths_nm) beams.push_back({0, nm});
+            return beams;
+          }(),
+          pool, log, cache_dir) {}
+
+MeasuredMaterial::MeasuredMaterial(const std::string& text, const Registry& registry, const std::vector<Beam>& beams,
+                                   ThreadPool& pool, const Log& log, const std::filesystem::path& cache_dir)
     : label_(text), seed_(material_seed(text)) {
   const WarningLog warnings(log);
-  for (const double nm : wavelengths_nm)
-    materials_.push_back(ready_material(text, registry, OneWavelength(nm), pool, warnings, cache_dir));
+  for (const Beam& beam : beams)
+    materials_.push_back(
+        beam.band ? ready_material(text, registry, OneBand(*beam.band), pool, warnings, cache_dir)
+                  : ready_material(text, registry, OneWavelength(beam.lambda_nm), pool, warnings, cache_dir));
 }
 
 }  // namespace frond

@@ -8,6 +8,7 @@
 
 #include "core/log.h"
 #include "core/material.h"
+#include "instruments/beam.h"
 #include "scene/format/description.h"
 #include "scene/registry.h"
 
@@ -28,12 +29,15 @@ class MeasuredMaterial {
   /// Throws as ready_material does.
   MeasuredMaterial(const std::string& text, const Registry& registry, const std::vector<double>& wavelengths_nm,
                    ThreadPool& pool, const Log& log, const std::filesystem::path& cache_dir);
+  /// The same, made once for each beam of light, which is of one wavelength or of a band.
+  MeasuredMaterial(const std::string& text, const Registry& registry, const std::vector<Beam>& beams, ThreadPool& pool,
+                   const Log& log, const std::filesystem::path& cache_dir);
 
   /// Text from which the material was made.
   const std::string& label() const { return label_; }
   /// Seed for random numbers: material_seed of the label.
   uint64_t seed() const { return seed_; }
-  /// Material prepared for the wavelength with this index.
+  /// Material prepared for the wavelength or the beam with this index.
   const Material& at(size_t wavelength) const { return *materials_[wavelength]; }
 
  private:

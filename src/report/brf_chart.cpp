@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "report/polar_map.h"
+#include "spectra/wavelengths/band_label.h"
 
 namespace frond {
 
@@ -22,9 +23,9 @@ Chart brf_plane_chart(const BrfMeasurement& r) {
   auto planes = distinct(r.views, &ViewDirection::azimuth_deg);
   std::ranges::sort(planes);
   for (const double azimuth : planes)
-    for (size_t band = 0; band < r.wavelengths_nm.size(); ++band) {
+    for (size_t band = 0; band < r.bands.size(); ++band) {
       const char* color = kSeriesColors[panel.series.size() % kSeriesColors.size()];
-      Series s{fmt::format("{:g} nm", r.wavelengths_nm[band]), color, 2, {}, Mark::disk, 2};
+      Series s{label_of(r.bands[band]), color, 2, {}, Mark::disk, 2};
       if (planes.size() > 1) s.label += fmt::format(", {:g}°", azimuth);
       for (size_t i = 0; i < r.views.size(); ++i)
         if (r.views[i].azimuth_deg == azimuth)
@@ -36,15 +37,15 @@ Chart brf_plane_chart(const BrfMeasurement& r) {
 
 Chart brf_hemisphere_chart(const BrfMeasurement& r) {
   constexpr size_t kMost = 12;
-  const size_t bands = r.wavelengths_nm.size();
-  if (bands > kMost) fail({}, "--plot draws at most {} maps, {} wavelengths were given", kMost, bands);
+  const size_t bands = r.bands.size();
+  if (bands > kMost) fail({}, "--plot draws at most {} maps, {} bands were given", kMost, bands);
   const auto zeniths = distinct(r.views, &ViewDirection::zenith_deg);
   const double ring = 1.0 / double(zeniths.size());
   Chart chart{2 * std::min<size_t>(bands, 3)};
   for (size_t band = 0; band < bands; ++band) {
     ColorScale scale;
     for (size_t i = 0; i < r.views.size(); ++i) scale.axis.range.include(r.at(i, band).mean);
-    const std::string title = fmt::format("{} at {:g} nm", r.quantity, r.wavelengths_nm[band]);
+    const std::string title = fmt::format("{} {}", r.quantity, place_of(r.bands[band]));
     const PolarMap map{chart.panels.emplace_back(disk_panel(340, title))};
     for (size_t i = 0; i < r.views.size(); ++i) {
       const auto& [zenith, azimuth] = r.views[i];

@@ -53,9 +53,9 @@ Chart map_chart(const std::vector<LabelledPatches>& measurements, bool logarithm
   const ColorScale scale = scale_of(measurements, logarithmic);
   Chart chart{3};
   for (const auto& [material, r] : measurements) {
-    const auto& [theta_deg, lambda_nm] = r.beam;
+    const double theta_deg = r.beam.theta_deg;
     const double radius = std::min(theta_deg, 180 - theta_deg) / 90;
-    const std::string light = fmt::format("BTDF, seen through: light at {:g}°, {:g} nm", theta_deg, lambda_nm);
+    const std::string light = fmt::format("BTDF, seen through: light at {:g}°, {}", theta_deg, label_of(r.beam));
     for (const bool reflected : {true, false}) {
       const bool labelled = chart.panels.empty();
       const PolarMap map{chart.panels.emplace_back(disk_panel(400, reflected ? "BRDF: " + material : light))};

@@ -54,7 +54,7 @@ void check_plane_chart(const MeasurementCounts& c, const DetectorSphere& sphere)
 Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
   const auto materials = distinct(measurements, &LabelledPatches::material);
   const auto angles = distinct(measurements, [](const auto& r) { return r.measurement.beam.theta_deg; });
-  const auto wavelengths = distinct(measurements, [](const auto& r) { return r.measurement.beam.lambda_nm; });
+  const auto lights = distinct(measurements, [](const auto& r) { return label_of(r.measurement.beam); });
   const bool some_integrated =
       std::ranges::any_of(measurements, [](const auto& r) { return r.measurement.is_integrated(); });
   // An integrated f is a line; a measured f of the same material is drawn as points.
@@ -70,14 +70,13 @@ Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
       if (angles.size() == 1) panel.width *= 2;
       for (const LabelledPatches& r : measurements) {
         if (r.measurement.beam.theta_deg != theta_deg) continue;
-        panel.series.push_back(series(r, "", kSeriesColors[place_in(wavelengths, r.measurement.beam.lambda_nm)]));
+        panel.series.push_back(series(r, "", kSeriesColors[place_in(lights, label_of(r.measurement.beam))]));
         panel.series.back().points = plane_points(r.measurement, reflected);
       }
     }
   auto& legend = chart.panels[0].series;
   legend[0].label = "mirror direction, or straight on", legend[1].label = "toward the light";
-  for (size_t i = 0; i < wavelengths.size(); ++i)
-    legend.push_back(line(fmt::format("{:g} nm", wavelengths[i]), kSeriesColors[i], 2));
+  for (size_t i = 0; i < lights.size(); ++i) legend.push_back(line(lights[i], kSeriesColors[i], 2));
   for (const std::string& m : materials)
     legend.push_back(series(*std::ranges::find(measurements, m, &LabelledPatches::material), m, "#404040"));
   return chart;

@@ -26,11 +26,7 @@ const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::
 SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& description) {
   const auto& words = std::get<std::vector<std::string>>(p.values);
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
-  const auto names = spectrum_names();
-  const std::filesystem::path path = description.resolve(words[0], p.value_where);
-  const bool is_named = std::ranges::find(names, words[0]) != names.end();
-  if (!is_named && is_spectrum_file(words[0], path)) return read_spd(path, p.value_where);
-  return named_spectrum(words[0], p.value_where);
+  return named_or_read_spectrum(words[0], description.resolve(words[0], p.value_where), p.value_where);
 }
 
 /// Limits the nesting of references; each level can double the cost of a lookup.

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/excerpt.h"
+#include "spectra/named.h"
 #include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
 #include "system/text_table.h"
@@ -149,6 +150,8 @@ std::string spectrum_name(const std::filesystem::path& path) {
 
 bool is_spectrum_file(std::string_view word, const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 4> kEndings{".spd", ".csv", ".tsv", ".txt"};
+  const auto names = spectrum_names();
+  if (std::ranges::find(names, word) != names.end()) return false;
   std::error_code error;
   return std::ranges::any_of(kEndings, [&](std::string_view ending) { return word.ends_with(ending); }) ||
          std::filesystem::is_regular_file(spectrum_column(path).file, error);
@@ -162,6 +165,10 @@ std::vector<SpectrumPoint> read_spd_points(const std::filesystem::path& path, co
 
 SpectrumPtr read_spd(const std::filesystem::path& path, const Location& where) {
   return make_tabulated(read_spd_points(path, where));
+}
+
+SpectrumPtr named_or_read_spectrum(std::string_view word, const std::filesystem::path& path, const Location& where) {
+  return is_spectrum_file(word, path) ? read_spd(path, where) : named_spectrum(word, where);
 }
 
 }  // namespace frond

@@ -33,8 +33,11 @@ SpectrumColumn spectrum_column(const std::filesystem::path& path);
 /// Returns the name of such a spectrum: the column's, else the file's without its ending.
 std::string spectrum_name(const std::filesystem::path& path);
 
-/// Returns whether a word is meant as a spectrum file rather than as the name of a spectrum: an existing file, with a
-/// column or without, or a name that ends with .spd, .csv, .tsv or .txt. `path`: where the file would be.
+/// Returns whether a word is a spectrum file: not the name of a spectrum, but an existing file, with a column or
+/// without, or a name that ends with .spd, .csv, .tsv or .txt. `path`: where the file would be.
 bool is_spectrum_file(std::string_view word, const std::filesystem::path& path);
+
+/// Returns the spectrum that a word names, or that of the file at `path` if it is a file. Throws InputError.
+SpectrumPtr named_or_read_spectrum(std::string_view word, const std::filesystem::path& path, const Location& where);
 
 }  // namespace frond

@@ -11,6 +11,7 @@ namespace frond {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kSun =
     "LightSource \"distant\" \"point3 from\" [-1 0 2] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-E\"\n";
@@ -93,9 +94,108 @@ TEST_F(RadiometryJobs, PhotonsAreCountedInPhysicalUnitsAlone) {
               HasSubstr("scene.pbrt:3:13: --irradiance scene: this light is scaled to lumi"));
   EXPECT_THAT(error("LightSource \"sky\" \"float illuminance\" 3\n", "scene", par), HasSubstr("scene.pbrt:3:19: "));
   EXPECT_THAT(error(sky, "stdillum-D65", par), HasSubstr("\"stdillum-D65\" is not in W/(m2 nm)"));
-  EXPECT_THAT(error(sky, "scene", "550"), HasSubstr("--irradiance: no PAR: bands from 400"));
+  EXPECT_EQ(error(sky, "scene", "550"), "");
+  EXPECT_THAT(measured(sky, {"flux", "--irradiance", "scene"}).err,
+              HasSubstr("--irradiance has no effect on single wavelengths; no PAR: bands from 400"));
   EXPECT_THAT(measured(kSun, {"flux"}).err, HasSubstr("no PAR: bands from 400"));
-  EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", par}).err, HasSubstr("; incident PAR 1990.2 µmol/(m2 s)\n"));
+  EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", par}).err,
+              HasSubstr("; incident PAR 1977.9 µmol/(m2 s), irradiance solar-am1.5-global\n"));
+}
+
+/// PAR and green have one mean wavelength; the names and the order are those of the files.
+TEST_F(RadiometryJobs, BandsHaveNamesInAllOutputs) {
+  folder_.write("par.spd", "400 1 700 1");
+  folder_.write("green.spd", "540 1 560 1");
+  const std::string files = "bands,responses=" + folder_.name_of("par.spd") + "," + folder_.name_of("green.spd");
+  const auto run = [&](std::vector<std::string> words, const std::string& names) {
+    words.insert(words.end(), {"--wavelengths", files + names});
+    return measured(kSun, words);
+  };
+  EXPECT_THAT(run({"brf", "--zenith", "0"}, "").out, ::testing::ContainsRegex("azimuth +band par +band green\n"));
+  EXPECT_THAT(run({"flux"}, ",names=PAR,G").out, ::testing::ContainsRegex("material +band PAR +band G\n"));
+  EXPECT_THAT(run({"brf", "--zenith", "0", "--csv", "-", "-q"}, "").out,
+              ::testing::ContainsRegex("azimuth_deg,band,wavelength_nm,brf,brf_se\n0,0,par,550,.*\n0,0,green,550,"));
+  EXPECT_THAT(run({"flux", "--csv", "-", "-q"}, "").out,
+              ::testing::ContainsRegex("quantity,material,band,wavelength_nm,share,share_se\nreflected,,par,550,.*\n"
+                                       "reflected,,green,550,"));
+  const auto json = nlohmann::json::parse(run({"flux", "--json", "-", "-q"}, ",names=PAR,G").out);
+  EXPECT_EQ(json["flux"][0]["band"], "PAR");
+  EXPECT_EQ(json["flux"][1]["band"], "G");
+  EXPECT_EQ(json["irradiance"], "scene");
+  EXPECT_THAT(run({"flux"}, "").err, HasSubstr("bands are weighted by the irradiance scene\n"));
+  EXPECT_EQ(run({"brf", "--zenith", "0,30", "--plot", folder_.name_of("plot.svg")}, "").code, 0);
+  std::ifstream plot(folder_.name_of("plot.svg"));
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(plot), {}), HasSubstr(">green<"));
+  more_ =
+      "ObjectBegin \"leaf\"\nShape \"disk\" \"float radius\" 0.3\nObjectEnd\nTranslate 0.5 0.5 1\n"
+      "ObjectInstance \"leaf\"\n";
+  EXPECT_THAT(run({"flux", "--by", "instance", "-q"}, "").out,
+              HasSubstr("instance,area,absorbed_par,absorbed_par_se,absorbed_green,absorbed_green_se\n"));
+}
+
+TEST_F(RadiometryJobs, WavelengthsKeepTheirOrder) {
+  EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", "700,400"}).out, ::testing::ContainsRegex("700 nm +400 nm\n"));
+  EXPECT_THAT(measured(kSun, {"brf", "--zenith", "0", "--wavelengths", "700,400", "--csv", "-", "-q"}).out,
+              ::testing::ContainsRegex("\n0,0,700,.*\n0,0,400,"));
+  EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", "700,650,600,550,500,450,400"}).err,
+              HasSubstr("incident PAR 1977.9"));
+}
+
+/// The results of these commands are printed, or written, or lost.
+TEST_F(RadiometryJobs, AResultThatIsNotKeptIsAWarning) {
+  const std::string warning = "-q prints no result", lost = "nothing is kept; --csv or --json";
+  for (const char* command : {"brf", "flux"}) {
+    const Outcome o = measured(kSun, {command, "-q"});
+    EXPECT_EQ(o.code, 0);
+    EXPECT_EQ(o.out, "");
+    EXPECT_THAT(o.err, HasSubstr(lost)) << command;
+    EXPECT_EQ(measured(kSun, {command, "-q", "--csv", folder_.name_of("a.csv")}).err, "");
+    EXPECT_EQ(measured(kSun, {command, "-q", "--json", "-"}).err, "");
+  }
+  for (const char* command : {"spectrophotometer", "goniophotometer"})
+    EXPECT_THAT(frond_command({command, "diffuse", "--wavelengths", "551", "--rays", "1e3", "-q"}).err,
+                HasSubstr(lost));
+  more_ =
+      "ObjectBegin \"leaf\"\nShape \"disk\" \"float radius\" 0.3\nObjectEnd\nTranslate 0.5 0.5 1\n"
+      "ObjectInstance \"leaf\"\n";
+  EXPECT_EQ(measured(kSun, {"flux", "--by", "instance", "-q"}).err, "");  // is printed
+}
+
+/// A leaf of 1 over a ground of 2000.
+TEST_F(RadiometryJobs, ATargetOfEmptyGroundIsAWarningWithABetterOne) {
+  options_.clear();
+  more_ =
+      "Shape \"disk\" \"float radius\" 1000 \"float height\" -1\n"
+      "MakeNamedMaterial \"leaf\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 0 2500 0]\n"
+      "NamedMaterial \"leaf\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1 1 1 1]\n";
+  const std::string instead = "--target 0,1,0,1,1";
+  for (const char* command : {"brf", "flux"}) {
+    EXPECT_THAT(measured(kSun, {command}).err, HasSubstr("covers 2.5e-05 % of it: " + instead)) << command;
+    EXPECT_THAT(measured(kSun, {command, "--target", "0,1,0,1,1"}).err, Not(HasSubstr("the target is the whole")));
+  }
+  const Outcome all = measured(kSun, {"flux"});
+  EXPECT_THAT(all.err, HasSubstr("no path met the material \"leaf\": its shares are unknown; raise --paths, or give a "
+                                 "smaller --target"));
+  EXPECT_THAT(all.out, ::testing::ContainsRegex("absorbed +leaf +0\n"));
+  EXPECT_THAT(measured(kSun, {"flux", "--csv", "-", "-q"}).out, HasSubstr("absorbed,leaf,550,0,\n"));
+  const Outcome leaf = measured(kSun, {"flux", "--target", "0,1,0,1,1"});
+  EXPECT_THAT(leaf.err, Not(HasSubstr("no path met the material \"leaf\"")));
+  EXPECT_THAT(leaf.out, ::testing::ContainsRegex("absorbed +leaf +1\n"));
+}
+
+/// No row and no warning for surfaces without a material, for objects that are not placed, for materials of mixtures.
+TEST_F(RadiometryJobs, OnlyMaterialsOfSurfacesCanBeMet) {
+  more_ =
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
+      "MakeNamedMaterial \"b\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]\n"
+      "NamedMaterial \"b\" Shape \"bilinearmesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1 1 1 1]\n"
+      "Material \"interface\" Shape \"bilinearmesh\" \"point3 P\" [0 0 2 1 0 2 0 1 2 1 1 2]\n"
+      "MakeNamedMaterial \"c\" \"string type\" \"diffuse\" NamedMaterial \"c\"\n"
+      "ObjectBegin \"unused\" Shape \"disk\" ObjectEnd\n";
+  const Outcome o = measured(kSun, {"flux"});
+  EXPECT_THAT(o.err, HasSubstr("no path met the material \"diffuse\": its shares are unknown"));  // below
+  EXPECT_THAT(o.out, ::testing::ContainsRegex("absorbed +b +"));
+  EXPECT_THAT(o.out, Not(::testing::ContainsRegex("absorbed +(a|c|interface) +")));
 }
 
 TEST_F(RadiometryJobs, AnErrorIsEstimatedFromSeveralPaths) {

@@ -245,8 +245,9 @@ TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
   for (size_t b = 0; b < 5; ++b) {
     const Band& band = bands->bands()[b];
     EXPECT_EQ(count[b], kSamples * 4 / 5);
-    EXPECT_NEAR(sum[b] / count[b] / midpoint_mean(band.response, [&](double nm) { return double(light->at(float(nm))); }),
-                1, 2e-3)
+    EXPECT_NEAR(
+        sum[b] / count[b] / midpoint_mean(band.response, [&](double nm) { return double(light->at(float(nm))); }), 1,
+        2e-3)
         << band.nm;
   }
 }

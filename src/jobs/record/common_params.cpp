@@ -109,6 +109,18 @@ std::string wavelengths_text(const Arguments& args) {
   return fmt::format("bands,wavelengths={}", fmt::join(*numbers, ","));
 }
 
+void warn_if_nothing_is_kept(const JobRun& run) {
+  if (!run.args.declares("quiet") || !run.args.flag("quiet")) return;
+  std::vector<std::string> outputs;
+  for (const JobParam* p : run.args.params()) {
+    if (p->path != PathUse::write || p->name == "cache") continue;
+    if (run.args.given(p->name)) return;
+    outputs.push_back(run.args.spelled(p->name));
+  }
+  run.log().warn({}, fmt::format("{} prints no result, and no file is written: nothing is kept; {} keeps it",
+                                 run.args.spelled("quiet"), fmt::join(outputs, " or ")));
+}
+
 /// Checked before the measurement, which may take hours.
 void check_chart_param(const JobRun& run, std::string_view name) {
   if (run.args.given(name)) check_chart(run.args.text(name));

@@ -68,6 +68,8 @@ void apply_scene_flags(const Arguments& args, SceneDescription& description);
 Unsupported unsupported_of(const Arguments& args);
 /// Reads the job's scene and applies the overrides. Throws InputError or Problems with all errors of the scene.
 SceneDescription described_scene(const JobRun& run);
+/// Warns if --quiet is given and no output file, so that the job's result is lost.
+void warn_if_nothing_is_kept(const JobRun& run);
 /// Returns --wavelengths as a plug-in and its parameters: "smpte", "bands,wavelengths=450,550". Numbers alone, 450,550
 /// or 400:700:10, become bands.
 std::string wavelengths_text(const Arguments& args);

@@ -2,17 +2,19 @@
 
 #include <algorithm>
 
+#include "scene/scene.h"
+#include "scene/scene_options.h"
+#include "spectra/named.h"
+#include "spectra/spd_file.h"
+
 namespace frond {
 
 MaterialsUnderTest::MaterialsUnderTest(const JobRun& run)
-    : run_(run),
-      as_rendered_(run.args.flag("rendered")),
-      angles_deg_(run.args.numbers("angles")),
-      wavelengths_nm_(run.args.numbers("wavelengths")) {
+    : run_(run), as_rendered_(run.args.flag("rendered")), angles_deg_(run.args.numbers("angles")) {
+  read_wavelengths();
   Session& session = run.session();
   for (const std::string& text : materials_of(run))
-    materials_.emplace_back(text, session.registry(), wavelengths_nm_, session.pool(), run.log(),
-                            run.context.options().cache);
+    materials_.emplace_back(text, session.registry(), lights_, session.pool(), run.log(), run.context.options().cache);
   // Errors of any material and angle are reported before the first ray.
   Arena arena;
   for (size_t i = 0; i < size(); ++i) {
@@ -23,12 +25,61 @@ MaterialsUnderTest::MaterialsUnderTest(const JobRun& run)
   }
 }
 
+void MaterialsUnderTest::read_wavelengths() {
+  constexpr Interval kKnown_nm{360, 2500};
+  const Arguments& args = run_.args;
+  const std::string option = args.spelled("wavelengths"), text = wavelengths_text(args);
+  const auto add = [&](double nm, const InstrumentBand* band) {
+    if (!kKnown_nm.contains(nm))
+      fail({}, "{}: wavelengths from {:g} to {:g} (nm) are needed; {:g} was given", option, kKnown_nm.min,
+           kKnown_nm.max, nm);
+    lights_.push_back({0, nm, band});
+  };
+  if (const auto numbers = parse_numbers(args.text("wavelengths"))) {
+    for (const double nm : *numbers) add(nm, nullptr);
+  } else {
+    SceneDescription description;
+    set_wavelengths(description, text, {std::make_shared<const std::string>(option)});
+    const auto strategy = make_wavelengths(description, run_.session().registry());
+    if (strategy->bands().empty())
+      fail({}, "{}: \"{}\" is for images of colours: an instrument needs wavelengths, as in 450,550 or 400:700:10",
+           option, text);
+    bands_.reserve(strategy->bands().size());  // lights point to them
+    for (const Band& band : strategy->bands())
+      add(band.nm, band.response.empty() ? nullptr : &bands_.emplace_back(lit_band(band)));
+  }
+  if (bands_.empty() && args.given("illuminant"))
+    run_.log().warn({}, fmt::format("{} has no effect on single wavelengths", args.spelled("illuminant")));
+}
+
+/// Throws InputError for an illuminant that is unknown or 0 in the band.
+InstrumentBand MaterialsUnderTest::lit_band(const Band& band) const {
+  const std::string option = run_.args.spelled("illuminant"), light = run_.args.text("illuminant");
+  const SpectrumPtr illuminant = named_or_read_spectrum(light, light, {});
+  const Interval needed{band.response.front().nm, band.response.back().nm}, known = illuminant->range_nm();
+  if (!(known.contains(needed.min) && known.contains(needed.max)))
+    fail({}, "{}: \"{}\" is known from {:g} to {:g} nm, band {} needs {:g} to {:g} nm", option, light, known.min,
+         known.max, band.name, needed.min, needed.max);
+  const auto lit = lit_response(band.response, *illuminant);
+  if (lit.empty()) fail({}, "{}: \"{}\" is 0 in band {}", option, light, band.name);
+  return {band.name, ResponseSampler(lit, {})};
+}
+
+std::string MaterialsUnderTest::illuminant_line() const {
+  return bands_.empty() ? "" : "Bands are weighted by response and illuminant: " + run_.args.text("illuminant");
+}
+
+void add_light(Table& table, const Beam& beam) {
+  if (beam.band) table.add("band", beam.band->name);
+  table.add("wavelength_nm", beam.lambda_nm);
+}
+
 /// The seed depends on the material's text, so that adding a material does not change the results of others.
 LitMaterial MaterialsUnderTest::lit_material(size_t i) const {
-  const size_t wavelength = i % wavelengths_nm_.size(), angle = i / wavelengths_nm_.size() % angles_deg_.size();
+  const size_t light = i % lights_.size(), angle = i / lights_.size() % angles_deg_.size();
   const MeasuredMaterial& m = material(i);
-  return {m.at(wavelength),
-          {angles_deg_[angle], wavelengths_nm_[wavelength]},
+  return {m.at(light),
+          {angles_deg_[angle], lights_[light].lambda_nm, lights_[light].band},
           hash_key(run_.args.seed("seed"), m.seed()),
           as_rendered_};
 }
@@ -54,6 +105,7 @@ std::vector<std::string> MaterialsUnderTest::notes(std::string_view instrument) 
           ? "As rendered: light arrives along wi and leaves along wo, whichever of them the model takes as incident."
           : "Light comes in along the direction that the material's model calls incident, whatever its "
             "\"incident\" says.");
+  if (!bands_.empty()) notes.push_back(illuminant_line());
   if (std::ranges::count(angles_deg_, 90) > 0)
     notes.push_back(
         "At 90 degrees light meets neither side: that figure is the limit from the front, cos theta = 1e-7.");

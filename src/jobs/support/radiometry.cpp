@@ -6,6 +6,15 @@
 
 namespace frond {
 
+void add_band(Table& table, const Band& band) {
+  if (!band.name.empty()) table.add("band", band.name);
+  table.add("wavelength_nm", band.nm);
+}
+
+std::string heading_of(const Band& band) {
+  return band.name.empty() ? fmt::format("{:g} nm", band.nm) : "band " + band.name;
+}
+
 std::optional<Target> target_of(const Arguments& args) {
   const auto v = args.numbers("target");
   if (v.empty()) return {};

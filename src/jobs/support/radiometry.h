@@ -5,6 +5,7 @@
 #include "jobs/record/common_params.h"
 #include "jobs/support/kept_file.h"
 #include "radiometry/brf.h"
+#include "report/table.h"
 
 /// Parameters shared by the jobs brf and flux: the measurement in a scene, and checkpoints beside the CSV file.
 namespace frond {
@@ -29,6 +30,10 @@ inline constexpr JobParam kCheckpointParam(
 inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
                                        "Resume from CSV.part if it exists; write one too.", {.needs = "csv"});
 
+/// Appends what identifies a band in a row of data: its name, if it has one, and its wavelength.
+void add_band(Table& table, const Band& band);
+/// Returns the heading of a band's column in text: "550 nm", or "band nir".
+std::string heading_of(const Band& band);
 /// Returns --target, or nullopt for the default.
 std::optional<Target> target_of(const Arguments& args);
 /// Returns --period in scene units, or nullopt.

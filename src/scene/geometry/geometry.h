@@ -110,6 +110,12 @@ class Geometry {
   uint64_t instances() const;
   /// Returns the columns of all tables by name; the range covers all columns of that name.
   std::vector<InstanceColumn> columns() const;
+  /// Returns the indices of the materials that surfaces have, ascending, without those of objects that are not placed.
+  std::vector<uint32_t> materials() const;
+  /// Returns the bounds of one of `surfaces()`, and of all else, instances included, where it is at the begin of the
+  /// exposure.
+  Bounds bounds_of(size_t surface) const;
+  Bounds bounds_without(size_t surface) const;
   /// Returns one-sided areas by instance number minus 1, in scene units squared.
   std::vector<float> areas() const;
 

@@ -22,8 +22,8 @@ constexpr Param kParams[] = {
      .list = true},
     {.name = "responses",
      .kind = ParamKind::string,
-     .doc =
-         "Files (.spd) of a sensor's responses, one for each band: a channel is the mean radiance under its response.",
+     .doc = "Files of a sensor's responses, one for each band, or columns of a table (srf.csv:B4): a channel is the "
+            "mean radiance under its response.",
      .list = true},
     {.name = "names",
      .kind = ParamKind::string,
@@ -152,7 +152,7 @@ class Bands final : public WavelengthStrategy {
       for (const SpectrumPoint& point : read_spd_points(file, where))
         response.push_back({point.lambda_nm, point.value});
       response = without_margins(response);
-      bands_.push_back({ResponseSampler(response, where).centroid_nm(), response, file.stem().string()});
+      bands_.push_back({ResponseSampler(response, where).centroid_nm(), response, spectrum_name(file)});
     }
     if (p.given("names")) rename(p.strings("names"), p.where("names"));
     for (const Band& band : bands_) check_name(band.name, p.where(p.given("names") ? "names" : "responses"));

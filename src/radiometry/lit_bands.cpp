@@ -1,0 +1,60 @@
+#include "radiometry/lit_bands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "spectra/spectrum_points.h"
+
+namespace frond {
+namespace {
+
+/// Throws InputError for the first wavelength at which `lit`, a response times another irradiance, is above 0, and the
+/// scene's irradiance is 0: no path can say what becomes of such light.
+void check_scene_has_light(const std::vector<ResponsePoint>& lit, const Spectrum& of_scene, const std::string& name) {
+  std::vector<double> nm = points_nm(of_scene, {lit.front().nm, lit.back().nm});
+  for (const ResponsePoint& p : lit) nm.push_back(p.nm);
+  std::ranges::sort(nm);
+  auto above = lit.begin();
+  for (size_t i = 1; i < nm.size(); ++i) {
+    if (nm[i] <= nm[i - 1]) continue;
+    const double middle = (nm[i - 1] + nm[i]) / 2;
+    while (above->nm < middle) ++above;
+    if (std::max(above[-1].value, above->value) > 0 && of_scene.at(float(middle)) == 0)
+      fail({},
+           "the lights of the scene give no light at {:.6g} nm, where the irradiance that band {} is weighted by has "
+           "some: give the scene a light that has all wavelengths",
+           middle, name);
+  }
+}
+
+}  // namespace
+
+void check_covers(const Spectrum& irradiance, Interval needed_nm, std::string_view what) {
+  const Interval known = irradiance.range_nm();
+  if ((known.min <= needed_nm.min || irradiance.at(float(known.min)) == 0) &&
+      (known.max >= needed_nm.max || irradiance.at(float(known.max)) == 0))
+    return;
+  fail({},
+       "the irradiance is known from {:g} to {:g} nm, {} {:g} to {:g} nm: where there is no light, let its table end "
+       "with 0",
+       known.min, known.max, what, needed_nm.min, needed_nm.max);
+}
+
+LitBands::LitBands(const WavelengthStrategy& strategy, const HorizontalIrradiance& of_scene,
+                   const SpectrumPtr& irradiance)
+    : strategy_(strategy) {
+  for (const Band& band : strategy.bands()) {
+    if (band.response.empty()) continue;
+    const Spectrum& light = irradiance ? *irradiance : *of_scene.spectrum();
+    if (irradiance)
+      check_covers(light, {band.response.front().nm, band.response.back().nm}, fmt::format("band {} needs", band.name));
+    const std::vector<ResponsePoint> lit = lit_response(band.response, light);
+    if (lit.empty()) fail({}, "the irradiance is 0 in band {}", band.name);
+    if (irradiance) check_scene_has_light(lit, *of_scene.spectrum(), band.name);
+    samplers_.emplace_back(lit, Location{});
+  }
+}
+
+}  // namespace frond

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "radiometry/horizontal_irradiance.h"
+#include "spectra/wavelengths/response_sampler.h"
+
+namespace frond {
+
+/// Wavelengths of light paths: those of the scene's strategy, but in a band with a response with a density in
+/// proportion to response times irradiance. So the mean of the shares that paths carry is the share of the band's light
+/// (docs/radiometry.md), and each path has the same weight.
+class LitBands {
+ public:
+  /// `irradiance`: of any unit; nullptr: that of the scene. `strategy` must outlive this object. Throws InputError for
+  /// an irradiance that is unknown or 0 in a band, or larger than 0 at a wavelength at which the scene has no light.
+  LitBands(const WavelengthStrategy& strategy, const HorizontalIrradiance& of_scene, const SpectrumPtr& irradiance);
+
+  /// As WavelengthStrategy::sample_in_turn.
+  SampledWavelengths sample_in_turn(uint64_t index, float u) const {
+    SampledWavelengths lambda = strategy_.sample_in_turn(index, u);
+    if (!samplers_.empty())
+      for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
+        lambda.nm[lane] = samplers_[lambda.band[lane]].sample(u);
+    return lambda;
+  }
+
+ private:
+  const WavelengthStrategy& strategy_;
+  std::vector<ResponseSampler> samplers_;  ///< by band; empty if the bands are single wavelengths
+};
+
+/// Throws InputError unless the data of an irradiance cover `needed_nm`, or end with 0: there is no light beyond.
+/// `what` needs them, as in "band nir needs".
+void check_covers(const Spectrum& irradiance, Interval needed_nm, std::string_view what);
+
+}  // namespace frond
