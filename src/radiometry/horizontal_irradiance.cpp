@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/stop.h"
 #include "spectra/spectrum_points.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_label.h"
@@ -52,6 +53,7 @@ std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengt
 std::vector<double> irradiance(const Light& light, std::span<const double> nm) {
   std::vector<double> values;
   for (size_t begin = 0; begin < nm.size(); begin += kLanes) {
+    check_stop();
     const SampledWavelengths lambda = lanes_at(nm.subspan(begin));
     const auto four = irradiance(light, lambda);
     values.insert(values.end(), four.begin(), four.begin() + lambda.count);
