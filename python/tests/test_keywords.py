@@ -169,6 +169,16 @@ def test_instruments_take_all_keywords_at_once(tmp_path, monkeypatch):
     assert numpy.array_equal(one["f"], two["f"][0]) and two["theta_o_deg"].shape == (4, 6)
 
 
+def test_fit_reads_absorptance_and_states_no_error_of_what_is_missing(reference):
+    table = frond.read_spectra(reference / "lopex93_soybean.csv")
+    fitted = {"structure": "bifacial", "sieve": False}
+    both = frond.fit(table["wavelength_nm"], table["R"], table["T"], **fitted)
+    given = {"wavelength_nm": table["wavelength_nm"], "R": table["R"], "A": 1 - table["R"] - table["T"]}
+    assert frond.fit(data=given, **fitted).leaf == pytest.approx(both.leaf, rel=1e-6)
+    assert 0 < both.result.facts["rmse_T"] < 0.01
+    assert numpy.isnan(frond.fit(table["wavelength_nm"], table["R"], **fitted).result.facts["rmse_T"])
+
+
 def test_fit_takes_its_keywords(tmp_path, reference):
     path = reference / "lopex93_soybean.csv"
     fitted = {"structure": "bifacial", "sieve": False}
