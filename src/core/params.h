@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/quantity.h"
 #include "core/spectrum.h"
+#include "core/units/quantity.h"
 #include "core/vec.h"
 
 namespace frond {
@@ -59,10 +59,10 @@ struct Param {
   Unit unit = "";
   Interval range = kAnyValue;  ///< allowed values of each number, ends included
   std::string_view doc;
-  bool list = false;                               ///< takes any number of values instead of one
-  bool required = false;                           ///< an error if the scene does not give it
-  Quantity quantity = Quantity::other;             ///< for a warning if numbers are probably in another unit
-  std::span<const std::string_view> choices = {};  ///< allowed strings; empty: any string
+  bool list = false;                                    ///< takes any number of values instead of one
+  bool required = false;                                ///< an error if the scene does not give it
+  PhysicalQuantity quantity = PhysicalQuantity::other;  ///< for a warning if numbers are probably in another unit
+  std::span<const std::string_view> choices = {};       ///< allowed strings; empty: any string
 };
 
 /// Parameter as a scene file gives it: `"float roughness" [ 0.1 ]`.

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/float4.h"
+#include "core/units/interval.h"
 
 namespace frond {
 
@@ -40,12 +41,6 @@ struct SampledSpectrum {
   bool is_black() const { return are_equal(v, Float4{}); }
   /// Returns whether every lane is finite and not negative.
   bool is_physical() const { return are_finite_and_not_negative(v); }
-};
-
-/// Closed interval [min, max].
-struct Interval {
-  double min, max;
-  constexpr bool contains(double x) const { return x >= min && x <= max; }  // false for NaN
 };
 
 /// Wavelengths of one path, one for each lane. BSDFs and textures need only compute active lanes. Lanes from `count` on

@@ -29,7 +29,7 @@ constexpr JobParam kParams[] = {
     kRadiometryWavelengthsParam,
     JobParam("zenith", numbers,
              "Zenith angles of the views; negative angles are on the sun's side, if there is one sun.",
-             {.default_value = "-75:75:5", .unit = "degrees", .decides = true, .quantity = Quantity::angle}),
+             {.default_value = "-75:75:5", .unit = "degrees", .decides = true, .quantity = PhysicalQuantity::angle}),
     JobParam("azimuth", numbers,
              "Azimuths of the views from the sun's plane; from +x toward +y if there is not exactly one sun.",
              {.default_value = "0", .unit = "degrees", .decides = true}),

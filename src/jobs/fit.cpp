@@ -53,9 +53,12 @@ constexpr JobParam kParams[] = {
              "Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction "
              "between it and leaf_solved with the fitted parameters.",
              {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "all-leaves"}),
-    JobParam(
-        "angle", real, "Angle of incidence, if the file does not state it.",
-        {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true, .quantity = Quantity::angle}),
+    JobParam("angle", real, "Angle of incidence, if the file does not state it.",
+             {.default_value = "8",
+              .unit = "degrees",
+              .range = {0, 180},
+              .decides = true,
+              .quantity = PhysicalQuantity::angle}),
     JobParam("structure", text, "Structure of the leaf; by default the better fit.",
              {.choices = kStructures, .decides = true}),
     JobParam("sieve", text, "Absorption with sieve and detour effects; by default the better fit.",

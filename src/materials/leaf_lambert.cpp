@@ -24,7 +24,7 @@ constexpr Param kOwn[] = {
      .doc =
          "Angle of incidence whose reflectance and transmittance are used at all angles; 8 is that of an integrating "
          "sphere.",
-     .quantity = Quantity::angle},
+     .quantity = PhysicalQuantity::angle},
     {.name = "bihemispherical",
      .kind = ParamKind::boolean,
      .default_value = false,

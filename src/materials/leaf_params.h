@@ -22,7 +22,7 @@ inline constexpr std::string_view kIncident[] = {"traced", "light", "reciprocal"
 
 // A parameter that may be a texture.
 constexpr Param leaf_number(std::string_view name, Unit unit, Interval range, std::string_view doc,
-                            Quantity quantity = Quantity::other) {
+                            PhysicalQuantity quantity = PhysicalQuantity::other) {
   return {
       .name = name, .kind = ParamKind::float_texture, .unit = unit, .range = range, .doc = doc, .quantity = quantity};
 }
@@ -40,39 +40,39 @@ inline constexpr std::array kLeafParams{
               "structure, and the parameters that are not given.",
           .choices = leaf::kSpecimenNames},
     detail::leaf_number("thickness", "m", {1e-6, 1e-2}, "Thickness of the leaf; by default the specimen's.",
-                        Quantity::leaf_thickness),
+                        PhysicalQuantity::leaf_thickness),
     detail::leaf_number(
         "mesophyllfraction", "", {0, 1},
         "Share of the thickness that absorbs; by default the specimen's. A content per leaf area is concentration "
         "x thickness x mesophyllfraction: 1 kg/m^2 is 1e5 ug/cm2 or 0.1 g/cm2 (docs/fit.md)."),
     detail::leaf_number("chlorophylla", detail::kDensity, {0, 100},
-                        "Chlorophyll a in the mesophyll; by default the specimen's.", Quantity::chlorophyll),
+                        "Chlorophyll a in the mesophyll; by default the specimen's.", PhysicalQuantity::chlorophyll),
     detail::leaf_number("chlorophyllb", detail::kDensity, {0, 100},
-                        "Chlorophyll b in the mesophyll; by default the specimen's.", Quantity::chlorophyll),
+                        "Chlorophyll b in the mesophyll; by default the specimen's.", PhysicalQuantity::chlorophyll),
     detail::leaf_number("carotenoids", detail::kDensity, {0, 100},
-                        "Carotenoids in the mesophyll; by default the specimen's.", Quantity::carotenoids),
+                        "Carotenoids in the mesophyll; by default the specimen's.", PhysicalQuantity::carotenoids),
     detail::leaf_number("protein", detail::kDensity, {0, 1500}, "Protein in the mesophyll; by default the specimen's.",
-                        Quantity::dry_matter),
+                        PhysicalQuantity::dry_matter),
     detail::leaf_number("cellulose", detail::kDensity, {0, 1500},
-                        "Cellulose in the mesophyll; by default the specimen's.", Quantity::dry_matter),
+                        "Cellulose in the mesophyll; by default the specimen's.", PhysicalQuantity::dry_matter),
     detail::leaf_number("lignin", detail::kDensity, {0, 1500}, "Lignin in the mesophyll; by default the specimen's.",
-                        Quantity::dry_matter),
+                        PhysicalQuantity::dry_matter),
     detail::leaf_number("anthocyanins", detail::kDensity, {0, 100},
                         "Anthocyanins in the mesophyll, with PROSPECT-D's spectrum; by default the specimen's.",
-                        Quantity::anthocyanins),
+                        PhysicalQuantity::anthocyanins),
     detail::leaf_number("brownpigments", "1/m", {0, 1e5},
                         "Brown pigments in the mesophyll, of dying leaves, with PROSPECT-D's spectrum; x thickness x "
                         "mesophyllfraction it is PROSPECT's content of them; by default the specimen's.",
-                        Quantity::brown_pigments),
+                        PhysicalQuantity::brown_pigments),
     detail::leaf_number("drymatter", detail::kDensity, {0, 1500},
                         "Dry matter in the mesophyll, with PROSPECT-D's spectrum, instead of protein, cellulose and "
                         "lignin; by default the specimen's.",
-                        Quantity::dry_matter),
+                        PhysicalQuantity::dry_matter),
     detail::leaf_number(
         "otherabsorption", "1/m", {0, 1e5},
         "Absorption coefficient of the mesophyll's other constituents (starch, sugars, tannins), the same "
         "at every wavelength; by default the specimen's.",
-        Quantity::absorption),
+        PhysicalQuantity::absorption),
     Param{.name = "absorption",
           .kind = ParamKind::string,
           .doc = "Specific absorption of chlorophylls, carotenoids and water. baranoski: as published with the model; "

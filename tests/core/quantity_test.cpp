@@ -1,16 +1,16 @@
-#include "core/quantity.h"
+#include "core/units/quantity.h"
 
 #include <gmock/gmock.h>
 
 namespace frond {
 namespace {
 
-using enum Quantity;
+using enum PhysicalQuantity;
 using ::testing::HasSubstr;
 
 constexpr Interval kAny{-1e30, 1e30};
 
-TEST(Quantity, AnotherUnitIsSuggestedWithTheValueToWrite) {
+TEST(PhysicalQuantity, AnotherUnitIsSuggestedWithTheValueToWrite) {
   EXPECT_EQ(unit_hint(1013.25, air_pressure, "Pa", kAny), "if it is in hPa (mbar), write 101325");
   EXPECT_EQ(unit_hint(101.325, air_pressure, "Pa", kAny), "if it is in kPa, write 101325");
   EXPECT_EQ(unit_hint(1, air_pressure, "Pa", kAny), "if it is in atm or bar, write 101325");
@@ -28,14 +28,14 @@ TEST(Quantity, AnotherUnitIsSuggestedWithTheValueToWrite) {
   EXPECT_THAT(unit_hint(0.4, brown_pigments, "1/m", {0, 1e5}), HasSubstr("PROSPECT's content"));
 }
 
-TEST(Quantity, NumbersOutOfRangeAreTriedAsPercentAndMicrometres) {
+TEST(PhysicalQuantity, NumbersOutOfRangeAreTriedAsPercentAndMicrometres) {
   EXPECT_EQ(unit_hint(45, other, "", {0, 1}), "if it is in percent, write 0.45");
   EXPECT_EQ(unit_hint(0.55, other, "nm", {300, 2500}), "if it is in micrometres, write 550");
   EXPECT_EQ(unit_hint(450, other, "", {0, 1}), "");
   EXPECT_EQ(unit_hint(45, other, "K", {0, 1}), "");
 }
 
-TEST(Quantity, PlausibleNumbersAreNot) {
+TEST(PhysicalQuantity, PlausibleNumbersAreNot) {
   for (const auto& [value, quantity, unit] : {std::tuple{101325., air_pressure, "Pa"},
                                               {33000., air_pressure, "Pa"},
                                               {5., soil_moisture, "% of the volume"},
@@ -50,7 +50,7 @@ TEST(Quantity, PlausibleNumbersAreNot) {
                                               {200., brown_pigments, "1/m"},
                                               {1.66e-4, leaf_thickness, "m"}})
     EXPECT_EQ(unit_hint(value, quantity, unit, kAny), "") << value << " " << unit;
-  for (const Quantity q : {angle, air_pressure, soil_moisture, dry_matter, brown_pigments})
+  for (const PhysicalQuantity q : {angle, air_pressure, soil_moisture, dry_matter, brown_pigments})
     EXPECT_EQ(unit_hint(0, q, "", kAny), "");
 }
 

@@ -47,10 +47,11 @@ struct ParamTraits {
   bool decides = false;  ///< the result depends on it: part of the identity of a measurement or a part
   bool positional = false;
   bool required = false;
-  Quantity quantity = Quantity::other;  ///< real, numbers: for a warning if they are probably in another unit
-  std::string_view needs = "";          ///< name of a parameter that must be given too
-  std::string_view excludes = "";       ///< names of parameters that must not be given too, separated by commas
-  std::string_view implied = "";        ///< text: the value if the option is written without one
+  PhysicalQuantity quantity =
+      PhysicalQuantity::other;     ///< real, numbers: for a warning if they are probably in another unit
+  std::string_view needs = "";     ///< name of a parameter that must be given too
+  std::string_view excludes = "";  ///< names of parameters that must not be given too, separated by commas
+  std::string_view implied = "";   ///< text: the value if the option is written without one
 };
 
 /// Record of one parameter of a job. Parsing, checks, help, man page, completion, docs/commands.md, and the Python

@@ -70,7 +70,7 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
 /// Warns of options whose numbers are probably all in another unit.
 void warn_of_units(const JobRun& run) {
   for (const JobParam* p : run.args.params()) {
-    if (p->quantity == Quantity::other || !run.args.given(p->name)) continue;
+    if (p->quantity == PhysicalQuantity::other || !run.args.given(p->name)) continue;
     const std::vector<double> values =
         p->kind == ArgumentKind::numbers ? run.args.numbers(p->name) : std::vector{run.args.real(p->name)};
     const auto hint = [p](double x) { return unit_hint(x, p->quantity, p->unit, p->range); };

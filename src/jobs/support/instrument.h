@@ -18,7 +18,7 @@ inline constexpr JobParam kAnglesParam("angles", ArgumentKind::numbers,
                                         .range = {0, 180},
                                         .aliases = "angle",
                                         .decides = true,
-                                        .quantity = Quantity::angle});
+                                        .quantity = PhysicalQuantity::angle});
 inline constexpr JobParam kInstrumentWavelengthsParam(
     "wavelengths", ArgumentKind::text,
     "Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=...",

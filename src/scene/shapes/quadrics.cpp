@@ -314,7 +314,7 @@ constexpr Param kPhiMax{.name = "phimax",
                         .unit = "degrees",
                         .range = {1e-3, 360},
                         .doc = "Sweep angle.",
-                        .quantity = Quantity::sweep};
+                        .quantity = PhysicalQuantity::sweep};
 constexpr Interval kRadius{0, 1e30};
 constexpr Param kSphere[] = {
     {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kRadius, .doc = "Radius."},

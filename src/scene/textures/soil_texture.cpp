@@ -32,7 +32,7 @@ constexpr Param kParams[] = {
      .unit = "% of the volume",
      .range = {0, Soil::kMoisture.max},
      .doc = "Water in the soil, films of which darken it (BSM, Verhoef et al. 2018); none up to 5 %.",
-     .quantity = Quantity::soil_moisture}};
+     .quantity = PhysicalQuantity::soil_moisture}};
 
 Soil make_soil(const Params& p) {
   constexpr std::string_view kSources[] = {"soil", "coefficients", "reflectance"};

@@ -1,4 +1,4 @@
-#include "core/quantity.h"
+#include "core/units/quantity.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ constexpr std::string_view kPerArea = "divide it by thickness x mesophyllfractio
 
 /// Values that are probably in another unit, since the quantity hardly has them in the parameter's.
 struct OtherUnit {
-  Quantity quantity;
+  PhysicalQuantity quantity;
   Interval values;
   std::string_view unit;  ///< "in hPa", "a fraction of 1"
   double factor = 0;      ///< converts to the parameter's unit; 0: `conversion` says how
@@ -28,22 +28,22 @@ struct OtherUnit {
 // Limits: a right angle and a turn; the air pressure on Mount Everest is 33 kPa; there are at most 7 cm of water vapour
 // in the tropics; 100 ug/cm2 of chlorophyll in a leaf of 0.1 mm are 20 kg/m^3, 20 ug/cm2 of carotenoids are 4 kg/m^3.
 constexpr OtherUnit kOtherUnits[] = {
-    {Quantity::angle, {0, 1.5709}, "in radians", kDegree},
-    {Quantity::sweep, {0, 6.2833}, "in radians", kDegree},
-    {Quantity::air_pressure, {0, 1.2}, "in atm or bar", 101325},
-    {Quantity::air_pressure, {20, 120}, "in kPa", 1000},
-    {Quantity::air_pressure, {120, 1200}, "in hPa (mbar)", 100},
-    {Quantity::water_vapour, {7.5, 75}, "in mm or kg/m^2", 0.1},
-    {Quantity::ozone, {10, 1000}, "in Dobson units", 1e-3},
-    {Quantity::soil_moisture, {0, 1}, "a fraction of 1", 100},
-    {Quantity::leaf_thickness, {0.02, 5}, "in mm", 1e-3},
-    {Quantity::leaf_thickness, {10, 5000}, "in um", 1e-6},
-    {Quantity::chlorophyll, {20, 1000}, "in ug/cm2", 0, kPerArea},
-    {Quantity::carotenoids, {7, 1000}, "in ug/cm2", 0, kPerArea},
-    {Quantity::anthocyanins, {15, 1000}, "in ug/cm2", 0, kPerArea},
-    {Quantity::dry_matter, {0, 0.05}, "in g/cm2", 0, kPerAreaInGrams},
-    {Quantity::brown_pigments, {0, 0.999}, "PROSPECT's content", 0, kPerLeaf},
-    {Quantity::absorption, {0, 0.999}, "in 1/mm", 1000},
+    {PhysicalQuantity::angle, {0, 1.5709}, "in radians", kDegree},
+    {PhysicalQuantity::sweep, {0, 6.2833}, "in radians", kDegree},
+    {PhysicalQuantity::air_pressure, {0, 1.2}, "in atm or bar", 101325},
+    {PhysicalQuantity::air_pressure, {20, 120}, "in kPa", 1000},
+    {PhysicalQuantity::air_pressure, {120, 1200}, "in hPa (mbar)", 100},
+    {PhysicalQuantity::water_vapour, {7.5, 75}, "in mm or kg/m^2", 0.1},
+    {PhysicalQuantity::ozone, {10, 1000}, "in Dobson units", 1e-3},
+    {PhysicalQuantity::soil_moisture, {0, 1}, "a fraction of 1", 100},
+    {PhysicalQuantity::leaf_thickness, {0.02, 5}, "in mm", 1e-3},
+    {PhysicalQuantity::leaf_thickness, {10, 5000}, "in um", 1e-6},
+    {PhysicalQuantity::chlorophyll, {20, 1000}, "in ug/cm2", 0, kPerArea},
+    {PhysicalQuantity::carotenoids, {7, 1000}, "in ug/cm2", 0, kPerArea},
+    {PhysicalQuantity::anthocyanins, {15, 1000}, "in ug/cm2", 0, kPerArea},
+    {PhysicalQuantity::dry_matter, {0, 0.05}, "in g/cm2", 0, kPerAreaInGrams},
+    {PhysicalQuantity::brown_pigments, {0, 0.999}, "PROSPECT's content", 0, kPerLeaf},
+    {PhysicalQuantity::absorption, {0, 0.999}, "in 1/mm", 1000},
 };
 
 std::string converted(std::string_view unit, double value) {
@@ -52,7 +52,7 @@ std::string converted(std::string_view unit, double value) {
 
 }  // namespace
 
-std::string unit_hint(double value, Quantity quantity, std::string_view unit, const Interval& range) {
+std::string unit_hint(double value, PhysicalQuantity quantity, std::string_view unit, const Interval& range) {
   if (value == 0 || !std::isfinite(value)) return "";
   const bool is_whole_degree = unit == "degrees" && value == std::floor(value);
   for (const OtherUnit& other : kOtherUnits) {

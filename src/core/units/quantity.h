@@ -4,12 +4,12 @@
 #include <string>
 #include <string_view>
 
-#include "core/spectrum.h"
+#include "core/units/interval.h"
 
 namespace frond {
 
 /// What a number measures, where it is often given in another unit than the parameter's.
-enum class Quantity : uint8_t {
+enum class PhysicalQuantity : uint8_t {
   other,           ///< values in its range say nothing about their unit
   angle,           ///< degrees
   sweep,           ///< degrees, up to a turn
@@ -29,6 +29,6 @@ enum class Quantity : uint8_t {
 /// Returns what a number is if it is not in the parameter's unit but in another that is in use, as "if it is in hPa,
 /// write 101325"; "" if nothing suggests that. 0 suggests nothing, and neither do whole degrees. Numbers outside the
 /// range are also tried as percent of a share and as micrometres instead of nm.
-std::string unit_hint(double value, Quantity quantity, std::string_view unit, const Interval& range);
+std::string unit_hint(double value, PhysicalQuantity quantity, std::string_view unit, const Interval& range);
 
 }  // namespace frond
