@@ -74,6 +74,7 @@ PlantImages::Decoded* PlantImages::decoded(int32_t image) {
     const fs::path name = source.name + (source.extension.empty() ? "" : "." + source.extension);
     const std::string_view format = image_format_of(bytes, name, {});
     result->file = image_codec().decode(bytes, format, name, {});
+    for (const std::string& message : result->file.left_out) log_.warn({}, message);
     const size_t channels = result->file.image.channels.size();
     if (channels < 1 || channels > 4) fail({}, "it has {} channels", channels);
     result->path = "." + extension_of(format);  // until it is used
