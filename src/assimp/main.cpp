@@ -50,6 +50,7 @@ ImportedScene read(const std::filesystem::path& path) {
     throw std::runtime_error(problem.empty() ? "it is damaged" : problem);
   }
   ImportedScene result = converted(*scene);
+  result.origin = files->origin();
   result.warnings = std::move(refusals);
   return result;
 }

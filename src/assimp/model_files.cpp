@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <cstdio>
+#include <cstring>
 #include <memory>
+#include <string_view>
+
+#include "imports/obj_origin.h"
 
 namespace frond {
 namespace {
@@ -44,6 +48,33 @@ class ReadStream final : public Assimp::IOStream {
  private:
   std::unique_ptr<FILE, int (*)(FILE*)> file_;
   size_t size_;
+};
+
+/// A text in memory, which outlives the stream.
+class TextStream final : public Assimp::IOStream {
+ public:
+  explicit TextStream(std::string_view text) : text_(text) {}
+
+  size_t Read(void* to, size_t size, size_t count) override {
+    const size_t whole = size == 0 ? 0 : std::min(count, (text_.size() - at_) / size);
+    std::memcpy(to, text_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  size_t Write(const void*, size_t, size_t) override { return 0; }
+  aiReturn Seek(size_t offset, aiOrigin origin) override {
+    const size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : text_.size();
+    if (offset > text_.size() - from) return aiReturn_FAILURE;
+    at_ = from + offset;
+    return aiReturn_SUCCESS;
+  }
+  size_t Tell() const override { return at_; }
+  size_t FileSize() const override { return text_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string_view text_;
+  size_t at_ = 0;
 };
 
 }  // namespace
@@ -129,7 +160,14 @@ Assimp::IOStream* ModelFiles::Open(const char* name, const char* mode) {
   }
   const uint64_t size = fs::file_size(path);
   limits_.allow_file(size);
-  return new ReadStream(file, size);
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  if (extension != ".obj") return new ReadStream(file, size);
+  obj_.resize(size);
+  obj_.resize(std::fread(obj_.data(), 1, size, file));
+  std::fclose(file);
+  if (const auto moved = move_obj_to_origin(obj_); moved != std::array<double, 3>{}) origin_ = moved;
+  return new TextStream(obj_);
 }
 
 void ModelFiles::Close(Assimp::IOStream* stream) { delete stream; }

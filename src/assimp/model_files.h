@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <assimp/IOSystem.hpp>
 #include <filesystem>
 #include <string>
@@ -33,6 +34,8 @@ class ModelFiles final : public Assimp::IOSystem {
 
   /// Messages about files that were asked for and not opened.
   const std::vector<std::string>& refusals() const { return refusals_; }
+  /// What was subtracted from the vertices of an OBJ file: move_obj_to_origin.
+  const std::array<double, 3>& origin() const { return origin_; }
 
  private:
   /// Returns the file's path, or an empty one if it must not be read.
@@ -42,6 +45,8 @@ class ModelFiles final : public Assimp::IOSystem {
   std::filesystem::path folder_;
   ProcessLimits& limits_;
   std::vector<std::string> refusals_;
+  std::string obj_;  ///< text of the OBJ file, with moved vertices
+  std::array<double, 3> origin_{};
 };
 
 }  // namespace frond

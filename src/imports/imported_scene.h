@@ -71,6 +71,7 @@ struct ImportedScene {
   std::vector<ImportedMaterial> materials;
   std::vector<ImportedMesh> meshes;
   std::vector<ImportedNode> nodes;
+  std::array<double, 3> origin{};  ///< point of the model that all positions are relative to: move_obj_to_origin
   std::vector<std::string> left_out;  ///< parts of the scene that have no counterpart: "2 animations", ...
   std::vector<std::string> warnings;
   bool operator==(const ImportedScene&) const = default;

@@ -138,6 +138,7 @@ size_t PlantGeometry::instance_count() const {
 PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   PlantGeometry geometry{.least = {kInfinity, kInfinity, kInfinity}, .most = {-kInfinity, -kInfinity, -kInfinity}};
+  geometry.origin = to_world.vector({scene.origin[0], scene.origin[1], scene.origin[2]});
   std::vector<NodeMap> maps;
   Uses uses;
   for (size_t i = 0; i < scene.nodes.size(); ++i) {

@@ -47,6 +47,7 @@ struct PlantGeometry {
   std::vector<PlantObject> objects = {};
   size_t flat_nodes = 0;  ///< nodes that are left out, because their transform has no inverse
   Vec3d least{}, most{};  ///< bounds
+  Vec3d origin{};         ///< of the scene to write: everything is relative to it
 
   size_t triangle_count() const;  ///< each mesh of an object once
   size_t instance_count() const;

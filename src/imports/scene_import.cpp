@@ -49,13 +49,17 @@ class SceneWriter {
         "# Written by frond {}: frond import {}. Materials and shapes; z is up. A scene in this folder includes it by\n"
         "#   Include \"{}-plant.pbrt\"\n\n{}\n",
         FROND_VERSION, comment_name(options_.model), stem_, materials_.text);
+    begin_at(geometry.origin);
     for (const PlantMesh& mesh : geometry.meshes) shape(mesh);
+    end_at(geometry.origin);
     for (const PlantObject& object : geometry.objects) {
       const std::string name = unique(plain_name(object.name), objects_);
       text_ += fmt::format("\nObjectBegin \"{}\"\n", name);
       for (const PlantMesh& mesh : object.meshes) shape(mesh);
       text_ += "ObjectEnd\n";
+      begin_at(geometry.origin);
       object.instances.size() > kMostDirectives ? table(object, name) : directives(object, name);
+      end_at(geometry.origin);
     }
     return std::move(text_);
   }
@@ -65,6 +69,17 @@ class SceneWriter {
     std::string result = name;
     for (int i = 2; !taken.insert(result).second; ++i) result = fmt::format("{}-{}", name, i);
     return result;
+  }
+
+  /// Places what follows, which is relative to a point, unless that is 0.
+  void begin_at(const Vec3d& origin) {
+    if (origin == Vec3d{}) return;
+    text_ += fmt::format("# The model is in map coordinates: its files are relative to this point, in 32-bit floats.\n"
+                         "AttributeBegin\nTranslate {} {} {}\n",
+                         origin.x, origin.y, origin.z);
+  }
+  void end_at(const Vec3d& origin) {
+    if (origin != Vec3d{}) text_ += "AttributeEnd\n";
   }
 
   void shape(const PlantMesh& mesh) {
@@ -122,16 +137,20 @@ Vec3d viewpoint(const PlantGeometry& geometry, const Vec3d& toward, double tange
   return center + toward * distance;
 }
 
+/// Returns a coordinate with the digits of a 32-bit float, or to a tenth of a millimetre if that is more.
+std::string digits(double x) { return is_far({x, 0, 0}) ? fmt::format("{:.4f}", x) : fmt::format("{:.9g}", x); }
+
 /// Camera that sees all of the model, from the front (-y) and above; a sky of even radiance 0.4 and a sun, in which a
 /// horizontal white surface has the value 1.
 std::string view(const PlantGeometry& geometry, const ImportOptions& options, const std::string& stem) {
   constexpr double kTangent = 0.2679491924;  // of half the field of view, 15 degrees
   const Vec3d center = (geometry.least + geometry.most) / 2.0, size = geometry.most - geometry.least;
-  const Vec3d eye = viewpoint(geometry, normalize(Vec3d{0.35, -1, 0.35}), kTangent);
+  const Vec3d eye = viewpoint(geometry, normalize(Vec3d{0.35, -1, 0.35}), kTangent) + geometry.origin;
+  const Vec3d at = center + geometry.origin;
   return fmt::format(
       "# Written by frond {}: frond import {}. z is up; the model is {:.6g} x {:.6g} x {:.6g} units.\n\n"
       "Scale -1 1 1  # right-handed space\n"
-      "LookAt {:.9g} {:.9g} {:.9g}   {:.9g} {:.9g} {:.9g}   0 0 1\n"
+      "LookAt {} {} {}   {} {} {}   0 0 1\n"
       "Camera \"perspective\" \"float fov\" 30\n"
       "Film \"rgb\" \"integer xresolution\" 800 \"integer yresolution\" 800 \"string filename\" \"{}.png\"\n"
       "Sampler \"lattice\" \"integer pixelsamples\" 64\n"
@@ -141,8 +160,8 @@ std::string view(const PlantGeometry& geometry, const ImportOptions& options, co
       "LightSource \"sky\" \"float elevation\" 50 \"float azimuth\" 230 \"float albedo\" 0.2 \"float illuminance\" "
       "3.14159\n\n"
       "Include \"{}-plant.pbrt\"\n",
-      FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, eye.x, eye.y, eye.z, center.x, center.y,
-      center.z, stem, stem);
+      FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, digits(eye.x), digits(eye.y),
+      digits(eye.z), digits(at.x), digits(at.y), digits(at.z), stem, stem);
 }
 
 /// Which materials have triangles.
@@ -190,6 +209,17 @@ std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<boo
   return all;
 }
 
+/// Warns of a model whose 32-bit floats have rounded its shape.
+void warn_of_steps(const PlantGeometry& geometry, const Log& log) {
+  constexpr double kVisible = 1. / 2048;
+  const double reach = std::max(largest_coordinate(geometry.least), largest_coordinate(geometry.most));
+  const double step = float_step(reach);
+  if (reach <= kFar || step < kVisible * largest_coordinate(geometry.most - geometry.least)) return;
+  log.warn({}, fmt::format("its coordinates are 32-bit floats up to {:.3g} units from the origin, where their step is {:g} "
+                           "units: move the model to the origin before it is exported, or export it as OBJ",
+                           reach, step));
+}
+
 /// Returns the name for files beside the scene, which scene files quote.
 std::string stem_of(const fs::path& scene) {
   const std::string stem = scene.stem().string();
@@ -233,6 +263,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   const ImportedScene scene = read_model(options.model);
   for (const std::string& warning : scene.warnings) log.warn({}, warning);
   PlantGeometry geometry = plant_geometry(scene, to_scene(options));
+  warn_of_steps(geometry, log);
   if (geometry.flat_nodes > 0)
     log.warn({}, fmt::format("{} nodes are left out: their transforms have no inverse", geometry.flat_nodes));
   const auto sheets = searched(geometry, single_sided(scene, options.single_sided), log);

@@ -97,7 +97,7 @@ void visit(T& v, Io& io) {
     each(v.name, v.parent, v.to_parent, v.meshes);
   } else {
     static_assert(std::is_same_v<Type, ImportedScene>);
-    each(v.images, v.materials, v.meshes, v.nodes, v.left_out, v.warnings);
+    each(v.images, v.materials, v.meshes, v.nodes, v.origin, v.left_out, v.warnings);
   }
 }
 
@@ -145,6 +145,7 @@ ImportedScene decode(std::string_view bytes) {
   ImportedScene scene;
   reader(scene);
   check(reader.at_end(), "it goes on after its end");
+  for (const double x : scene.origin) check(std::isfinite(x), "its origin is not finite");
   for (const auto& m : scene.materials) check_material(m, scene.images.size());
   for (const auto& m : scene.meshes) check_mesh(m, scene.materials.size());
   for (size_t i = 0; i < scene.nodes.size(); ++i) {

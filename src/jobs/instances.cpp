@@ -31,7 +31,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 class NumberTable {
  public:
   explicit NumberTable(const std::string& path)
-      : text_(read_file_bytes(path, {})), rows_(text_, path, TableComments::anywhere) {
+      : text_(read_file_bytes(path, {})), start_(text_, path, TableComments::anywhere), rows_(start_) {
     if (rows_.columns() == 0) fail(rows_.names_where(), "the file is empty: its first line names the columns");
     for (const TableField& field : rows_.names()) names_.emplace_back(field.text);
     if (rows_.has_names()) return;
@@ -63,6 +63,8 @@ class NumberTable {
     }
     return true;
   }
+  /// Goes back to the first row.
+  void rewind() { rows_ = start_; }
   Location where() const { return rows_.where(); }
   /// Location of a value of the last row.
   Location where(size_t value) const { return rows_.where(value); }
@@ -72,7 +74,7 @@ class NumberTable {
 
  private:
   std::string text_;
-  TextTable rows_;
+  TextTable start_, rows_;
   std::vector<std::string> names_;
 };
 
@@ -156,7 +158,7 @@ class Placement {
   const std::vector<size_t>& columns() const { return columns_; }
 
   /// Returns the object-to-world map of a row. Throws InputError for a normal or a quaternion of length 0.
-  AffineMap map(const std::vector<double>& v, const Location& where) const {
+  PreciseTransform::Rows map(const std::vector<double>& v, const Location& where) const {
     const auto at = [&](const char* name, double otherwise) {
       const auto column = used_.find(name);
       return column == used_.end() ? otherwise : v[column->second];
@@ -164,12 +166,12 @@ class Placement {
     const Vec3d position{at("x", 0), at("y", 0), at("z", 0)};
     const double scale = at(by_radius_ ? "radius" : "scale", 1);
     if (by_matrix_) {
-      AffineMap map;
+      PreciseTransform::Rows rows;
       constexpr const char* kNames[3][3] = {{"m00", "m01", "m02"}, {"m10", "m11", "m12"}, {"m20", "m21", "m22"}};
       for (size_t i = 0; i < 3; ++i)
-        map.rows[i] = {float(at(kNames[i][0], 0) * scale), float(at(kNames[i][1], 0) * scale),
-                       float(at(kNames[i][2], 0) * scale), float(position[int(i)])};
-      return map;
+        rows[i] = {at(kNames[i][0], 0) * scale, at(kNames[i][1], 0) * scale, at(kNames[i][2], 0) * scale,
+                   position[int(i)]};
+      return rows;
     }
     if (by_quaternion_) return turned(position, {at("qx", 0), at("qy", 0), at("qz", 0)}, at("qw", 1), scale, where);
     Vec3d normal{0, 0, 1};
@@ -179,7 +181,7 @@ class Placement {
       normal = {std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)};
     }
     if (normal == Vec3d{}) fail(where, "the normal is 0 0 0");
-    return oriented_map(position, normalize(normal), at("spin", 0) * kDegree, scale);
+    return oriented_rows(position, normalize(normal), at("spin", 0) * kDegree, scale);
   }
 
  private:
@@ -201,15 +203,15 @@ class Placement {
   }
 
   /// Rotation by the quaternion (q, w), normalized here, and uniform scaling.
-  static AffineMap turned(const Vec3d& position, Vec3d q, double w, double scale, const Location& where) {
+  static PreciseTransform::Rows turned(const Vec3d& position, Vec3d q, double w, double scale, const Location& where) {
     const double norm = std::sqrt(dot(q, q) + w * w);
     if (norm == 0) fail(where, "the quaternion is 0 0 0 0");
     q = q / norm, w /= norm;
     const auto rotated = [&](const Vec3d& v) { return v + 2 * cross(q, cross(q, v) + w * v); };
     const Vec3d x = rotated({scale, 0, 0}), y = rotated({0, scale, 0}), z = rotated({0, 0, scale});
-    AffineMap map;
-    for (int i = 0; i < 3; ++i) map.rows[size_t(i)] = {float(x[i]), float(y[i]), float(z[i]), float(position[i])};
-    return map;
+    PreciseTransform::Rows rows;
+    for (int i = 0; i < 3; ++i) rows[size_t(i)] = {x[i], y[i], z[i], position[i]};
+    return rows;
   }
 
   std::vector<std::string> names_;
@@ -231,6 +233,15 @@ void tell(const JobRun& run, const NumberTable& table, const Placement& placemen
                                fmt::join(unclear, "\", \"")));
 }
 
+/// Returns the type of the table's maps: they are read once before, because the header comes first.
+MapType map_type_of(NumberTable& table, const Placement& placement) {
+  double reach = 0;
+  for (std::vector<double> values; table.next(values);)
+    for (const auto& row : placement.map(values, table.where())) reach = std::max(reach, std::abs(row[3]));
+  table.rewind();
+  return map_type(reach);
+}
+
 /// The job: converts row by row, so that memory does not grow with the number of instances.
 Result instances(const JobRun& run) {
   NumberTable table(run.args.text("csv"));
@@ -240,22 +251,25 @@ Result instances(const JobRun& run) {
   const size_t rows = table.rows_left();
   if (rows == 0) fail(table.names_where(), "the file has no rows, only the names of columns");
   tell(run, table, placement);
-  InstanceWriter writer(binary_file_of(run.args, "output"), rows, names);
+  const std::string output = binary_file_of(run.args, "output");
+  const MapType type = map_type_of(table, placement);
+  InstanceWriter writer(output, rows, names, type);
   std::vector<double> values;
   std::vector<float> numbers(names.size());
   while (table.next(values)) {
     placement.check_scale(table, values);
     if (!table.has_names()) placement.check_leaf_cloud(table, values);
-    const AffineMap map = placement.map(values, table.where());
-    if (const std::string problem = problem_of(map); !problem.empty())
+    const PreciseTransform::Rows map = placement.map(values, table.where());
+    if (const std::string problem = problem_of(rounded_map(map)); !problem.empty())
       fail(table.where(), "this instance is not possible: {}", problem);
     for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = float(values[placement.columns()[i]]);
     writer.add(map, numbers);
   }
   writer.finish();
   run.log().info(fmt::format(
-      "{}: {} instance{}{}", run.args.text("output"), rows, rows == 1 ? "" : "s",
-      names.empty() ? "" : fmt::format(", with numbers for Texture \"instance\": {}", fmt::join(names, ", "))));
+      "{}: {} instance{}{}{}", run.args.text("output"), rows, rows == 1 ? "" : "s",
+      names.empty() ? "" : fmt::format(", with numbers for Texture \"instance\": {}", fmt::join(names, ", ")),
+      type == MapType::precise ? ", 64-bit floats for positions far from the origin" : ""));
   return {.facts = {{"instances", double(rows)}}};
 }
 

@@ -258,7 +258,8 @@ class FluxMeter::Sums {
     if (!light) return;
     const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
     const Vec3d d = to_double(light->direction);
-    Ray ray{to_float(on_target - d * distance_above(state_.scene(), t, -d.z)), light->direction};
+    const Scene& scene = state_.scene();
+    Ray ray{to_float(on_target - d * distance_above(scene, t, -d.z) - scene.origin()), light->direction};
     Lanes share = light->weight;
     const float full = kFull * share.max();
     constexpr int kPolled = 256;

@@ -27,6 +27,18 @@ std::string_view model_of(const ParsedPlugin& plugin) {
   return plugin.name;
 }
 
+struct FileBounds {
+  Vec3d min, max;
+};
+
+/// Returns bounds in the coordinates of the scene file.
+FileBounds in_file(const Bounds& b, const Scene& scene) {
+  return {to_double(b.min) + scene.origin(), to_double(b.max) + scene.origin()};
+}
+
+/// Returns the scene's bounds in the coordinates of the scene file.
+FileBounds file_bounds(const Scene& scene) { return in_file(scene.geometry().bounds(), scene); }
+
 double horizontal_area(const Bounds& b) { return double(b.max.x - b.min.x) * double(b.max.y - b.min.y); }
 
 /// Index of the largest surface by horizontal extent, if it is flat; nullopt if it is not, or if there is none.
@@ -42,17 +54,19 @@ std::optional<size_t> largest_flat_surface(const Geometry& geometry) {
 }
 
 /// Warns if all but the ground covers less than half of the target, which is the whole scene.
-void warn_of_empty_ground(const Geometry& geometry, const Target& target, const Log& log) {
+void warn_of_empty_ground(const Scene& scene, const Target& target, const Log& log) {
   constexpr double kMostly = 0.5;
+  const Geometry& geometry = scene.geometry();
   const auto ground = largest_flat_surface(geometry);
   if (!ground) return;
   const Bounds rest = geometry.bounds_without(*ground);
   if (rest.is_empty() || geometry.bounds_of(*ground).max.z > rest.max.z) return;
   const double share = horizontal_area(rest) / ((target.x1 - target.x0) * (target.y1 - target.y0));
   if (!(share > 0 && share < kMostly)) return;
+  const FileBounds better = in_file(rest, scene);
   log.warn({}, fmt::format("the target is the whole scene, by default, and all but the ground covers {:.2g} % of it: "
-                           "--target {},{},{},{},{} measures that",
-                           100 * share, rest.min.x, rest.max.x, rest.min.y, rest.max.y, rest.max.z));
+                           "--target {:.8g},{:.8g},{:.8g},{:.8g},{:.8g} measures that",
+                           100 * share, better.min.x, better.max.x, better.min.y, better.max.y, better.max.z));
 }
 
 }  // namespace
@@ -98,35 +112,35 @@ std::string measurement_text(const std::string& what, const std::optional<Target
 }
 
 Target default_target(const Scene& scene, const Log& log) {
-  const Bounds b = scene.geometry().bounds();
-  if (b.is_empty()) fail({}, "nothing stands in this scene: there is nothing to look at");
-  Target target{double(b.min.x), double(b.max.x), double(b.min.y), double(b.max.y), double(b.max.z)};
+  if (scene.geometry().bounds().is_empty()) fail({}, "nothing stands in this scene: there is nothing to look at");
+  const FileBounds b = file_bounds(scene);
+  Target target{b.min.x, b.max.x, b.min.y, b.max.y, b.max.z};
   if (const auto period = scene.period()) {
     target.x1 = target.x0 + double(period->x);
     target.y1 = target.y0 + double(period->y);
   }
   if (!(target.x0 < target.x1 && target.y0 < target.y1))
     fail({}, "the scene has no horizontal extent: give --target x0,x1,y0,y1,z");
-  if (!scene.period()) warn_of_empty_ground(scene.geometry(), target, log);
+  if (!scene.period()) warn_of_empty_ground(scene, target, log);
   return target;
 }
 
 void check_target(const Scene& scene, const Target& target) {
-  for (const double z : {target.z, double(scene.geometry().bounds().max.z)}) {
+  const auto b = file_bounds(scene);
+  for (const double z : {target.z, b.max.z}) {
     check_coordinates({float(target.x0), float(target.y0), float(z)}, "a corner of the target is", {});
     check_coordinates({float(target.x1), float(target.y1), float(z)}, "a corner of the target is", {});
   }
-  const Bounds b = scene.geometry().bounds();
-  const bool is_beside = target.x1 <= double(b.min.x) || target.x0 >= double(b.max.x) || target.y1 <= double(b.min.y) ||
-                         target.y0 >= double(b.max.y);
+  const bool is_beside =
+      target.x1 <= b.min.x || target.x0 >= b.max.x || target.y1 <= b.min.y || target.y0 >= b.max.y;
   if (is_beside && !scene.period())
-    fail({}, "the target lies beside the scene, which reaches from ({:g}, {:g}) to ({:g}, {:g})", b.min.x, b.min.y,
+    fail({}, "the target lies beside the scene, which reaches from ({:.10g}, {:.10g}) to ({:.10g}, {:.10g})", b.min.x, b.min.y,
          b.max.x, b.max.y);
 }
 
 double distance_above(const Scene& scene, const Target& target, double cosine) {
   constexpr double kClear = 1e-3;  // fraction of the scene's radius
-  const double top = double(scene.geometry().bounds().max.z) + kClear * double(scene.radius());
+  const double top = file_bounds(scene).max.z + kClear * double(scene.radius());
   return std::max(0.0, top - target.z) / cosine;
 }
 

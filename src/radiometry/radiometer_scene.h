@@ -23,6 +23,8 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,
                              const std::optional<std::array<double, 2>>& period);
 
+/// Targets are in the coordinates of the scene file, as the user gives them, not relative to Scene::origin.
+
 /// Returns one period, or the scene's bounds, at the scene's top. Warns if these bounds are mostly empty ground, with
 /// the rectangle around all else.
 Target default_target(const Scene& scene, const Log& log);

@@ -68,12 +68,18 @@ ImageFormat image_of(const SceneSettings& description, const ImageRequest& reque
   ImageFormat image{.space = space_of(description, request, scene.wavelengths().film_space()),
                     .bands = {bands.begin(), bands.end()},
                     .attributes = request.attributes};
-  if (film.features_in_camera_space) image.from_world = to_double_rows(description.camera_from_world.start);
+  const Vec3d& origin = scene.origin();
+  if (film.features_in_camera_space) {
+    const SceneTransform& view = description.camera_from_world.start;
+    image.from_world = origin == Vec3d{} ? to_double_rows(view) : view.relative_to(origin).precise.rows();
+  }
   if (channels.has("material")) name_materials(description, image);
   image.attributes["frond:version"] = FROND_VERSION;
   image.attributes["frond:seed"] = std::to_string(scene.seed());
   image.attributes["frond:wavelengths"] = scene.wavelengths_name();
   if (const auto white = light_white(scene)) image.attributes[kLightWhiteKey] = chromaticity_text(*white);
+  if (origin != Vec3d{})
+    image.attributes["frond:origin"] = fmt::format("{:.17g} {:.17g} {:.17g}", origin.x, origin.y, origin.z);
   image.attributes["frond:scene_hash"] = fmt::format("{:016x}", description.content_hash);
   return image;
 }

@@ -217,13 +217,28 @@ class GeometryBuilder {
       fail(shape.plugin.where, "instances of objects cannot emit light: area lights inside objects are not supported");
     const auto object = by_name_.find(set.object);
     if (object == by_name_.end()) fail_unknown(set.object, params.where("object"));
-    auto& table = tables_[set.table];
-    if (!table) table = std::make_shared<const InstanceTable>(set.table, params.where("filename"), pool_);
-    Instances result{.table = table, .objects = {visit(object->second)}, .placement = {shape.world_from_object.rows()}};
-    result.is_placed = !(shape.world_from_object == Transform());
+    const TableOrigins origins =
+        origins_of(shape.world_from_object.precise, description_.objects[object->second].origin);
+    auto& table = tables_[{set.table, origins}];
+    if (!table) {
+      table = std::make_shared<const InstanceTable>(set.table, params.where("filename"), pool_, origins);
+      warn_of_steps(*table, params);
+    }
+    const Transform placement = shape.world_from_object.relative_to(table->origin());
+    Instances result{.table = table, .objects = {visit(object->second)}, .placement = {placement.rows()}};
+    result.is_placed = !(placement == Transform());
     if (const std::string problem = problem_of(result.placement); !problem.empty())
       fail(shape.plugin.where, "these instances are not possible: {}", problem);
     return result;
+  }
+
+  /// Warns of a table whose 32-bit floats have rounded positions that far from the origin.
+  static void warn_of_steps(const InstanceTable& table, const Params& params) {
+    constexpr double kLargest = 1. / 256;
+    if (table.step() >= kLargest)
+      params.warn("filename", fmt::format("its positions are 32-bit floats up to {:.3g} units from the origin, where their "
+                                          "step is {:g} units; \"transform\" may hold 64-bit floats (<f8)",
+                                          table.step() * (1 << 23), table.step()));
   }
 
   /// Throws InputError with the nearest object name.
@@ -248,7 +263,7 @@ class GeometryBuilder {
   std::vector<Built> built_;
   size_t open_ = 0;  ///< objects that are being visited, each inside the one before
   std::map<std::string, size_t, std::less<>> by_name_;
-  std::map<std::filesystem::path, std::shared_ptr<const InstanceTable>> tables_;
+  std::map<std::pair<std::filesystem::path, TableOrigins>, std::shared_ptr<const InstanceTable>> tables_;
   std::vector<Visit> visits_;
   std::vector<ObjectParts> objects_;
 };

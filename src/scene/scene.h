@@ -98,6 +98,8 @@ class Scene final : public World {
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
   const Geometry& geometry() const { return *geometry_; }
+  /// Point of the scene file's world that is the origin of this one: SceneOrigins.
+  const Vec3d& origin() const { return origin_; }
   /// Period along x and y; nullopt: the scene is not repeated.
   std::optional<Vec2> period() const { return period_; }
   /// Returns the material with this index in the description; nullptr if it is unused.
@@ -118,6 +120,7 @@ class Scene final : public World {
   void describe(const GeometryHit& at, SurfacePoint& point) const;
   void add_details(uint32_t material, Hit& hit) const;
 
+  Vec3d origin_{};
   std::string wavelengths_name_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;
   FilmSettings film_;

@@ -7,6 +7,7 @@
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
 #include "scene/lights/shape_emitter.h"
+#include "scene/origin.h"
 #include "scene/pilot_rays.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
@@ -467,16 +468,34 @@ std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, cons
   return leaves;
 }
 
+/// Builds from the description, or from one in coordinates relative to the scene's origins.
 Scene::Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
              const std::filesystem::path& cache, const Scene* other, SharedWork* shared) {
   SharedWork own;
-  SceneBuilder(*this, description, registry, pool, log, cache).build(description, other, shared ? *shared : own);
+  const auto build = [&](const SceneDescription& of) {
+    SceneBuilder(*this, of, registry, pool, log, cache).build(of, other, shared ? *shared : own);
+  };
+  const SceneOrigins origins = other ? SceneOrigins{other->origin_, {}, other->origin_ != Vec3d{}}
+                                     : find_origins(description, log);
+  origin_ = origins.world;
+  if (!origins.move_something) {
+    build(description);
+    return;
+  }
+  if (!other && origin_ != Vec3d{})
+    log.info(fmt::format("the scene is far from the origin of its coordinates: positions are kept relative to ({:.10g}, "
+                         "{:.10g}, {:.10g})",
+                         origin_.x, origin_.y, origin_.z));
+  build(moved_to(origins, description, registry));
 }
 
 /// Builds into a scene that is discarded.
 void Scene::check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log) {
   Scene scene;
-  SceneBuilder(scene, description, registry, pool, log, {}).check(description);
+  const SceneOrigins origins = find_origins(description, log);
+  const SceneDescription moved = origins.move_something ? moved_to(origins, description, registry) : SceneDescription();
+  const SceneDescription& of = origins.move_something ? moved : description;
+  SceneBuilder(scene, of, registry, pool, log, {}).check(of);
 }
 
 }  // namespace frond

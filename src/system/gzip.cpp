@@ -66,4 +66,17 @@ std::string unpack_gzip(std::string_view bytes, const std::string& name, const L
   }
 }
 
+std::string unpack_gzip_start(std::string_view bytes) {
+  Inflater inflater;
+  z_stream& stream = *inflater;
+  std::string text(kBlock, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib does not write there
+  stream.avail_in = uInt(std::min<size_t>(bytes.size(), std::numeric_limits<uInt>::max()));
+  stream.next_out = reinterpret_cast<Bytef*>(text.data());
+  stream.avail_out = uInt(text.size());
+  const int verdict = inflate(&stream, Z_SYNC_FLUSH);
+  if (verdict != Z_OK && verdict != Z_STREAM_END && verdict != Z_BUF_ERROR) return {};
+  return text.substr(0, kBlock - std::min<size_t>(stream.avail_out, kBlock));
+}
+
 }  // namespace frond

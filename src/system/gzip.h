@@ -19,4 +19,7 @@ constexpr size_t most_unpacked(size_t packed) { return std::max(size_t{1} << 25,
 /// damaged or truncated, or unpacks to more than `most` bytes (0: most_unpacked). `name` is the file in messages.
 std::string unpack_gzip(std::string_view bytes, const std::string& name, const Location& where, size_t most = 0);
 
+/// Returns what the first bytes of a gzip file unpack to, up to 256 KiB; "" if they are damaged.
+std::string unpack_gzip_start(std::string_view bytes);
+
 }  // namespace frond

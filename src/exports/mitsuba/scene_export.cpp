@@ -5,6 +5,7 @@
 #include "exports/mitsuba/lights.h"
 #include "exports/mitsuba/shapes.h"
 #include "exports/mitsuba/view.h"
+#include "scene/origin.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 
@@ -37,6 +38,8 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
   set_wavelengths(description, spectra.frond_wavelengths());
   check_options(description, log);
   Scene::check(description, registry, pool, silent_log());
+  const SceneOrigins origins = find_origins(description, log);
+  if (origins.move_something) description = moved_to(origins, std::move(description), registry);
   SceneResolver resolver(description, registry, spectra.strategy(), log);
   const FilmSettings film = Scene::film_settings(description, registry, log);
   const ParsedPlugin& sampler = description.sampler;
@@ -58,6 +61,10 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
     constexpr std::string_view kVariants[] = {"mono", "rgb", "spectral"};
     xml.comment(fmt::format("For {} variants of Mitsuba; frond renders the same with wavelengths {}",
                             kVariants[size_t(spectra.variants())], spectra.frond_wavelengths()));
+    if (const Vec3d& o = origins.world; o != Vec3d{})
+      xml.comment(fmt::format("Positions are relative to ({:.10g}, {:.10g}, {:.10g}) of the scene file, because Mitsuba's "
+                              "have 32 bits",
+                              o.x, o.y, o.z));
     xml.comment(fmt::format("One unit of the scene file is {:g} units here, because Mitsuba offsets rays by a length",
                             context.units));
     write_view(context, xml, film, samples);

@@ -116,10 +116,11 @@ Shapes::Parts Shapes::parts_of(const std::vector<ShapeDescription>& shapes, cons
 
 /// Columns of the table have no equivalent; textures that read them are refused.
 void Shapes::add_table(const ObjectInstances& set, const ShapeDescription& shape, const Params& p, Parts& parts) {
-  const InstanceTable table(set.table, p.where("filename"), context_.pool);
   const auto& objects = context_.description.objects;
   const auto object = std::ranges::find(objects, set.object, &ObjectDescription::name);
-  const AffineMap placement{shape.world_from_object.rows()};
+  const InstanceTable table(set.table, p.where("filename"), context_.pool,
+                            origins_of(shape.world_from_object.precise, object->origin));
+  const AffineMap placement{shape.world_from_object.relative_to(table.origin()).rows()};
   for (size_t row = 0; row < table.size(); ++row)
     parts.instances.push_back({size_t(object - objects.begin()), product(placement, table.map(row))});
 }

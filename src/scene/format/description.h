@@ -32,14 +32,14 @@ struct TextureDescription {
   std::string name;
   Value value;
   ParsedPlugin plugin;
-  Transform world_from_texture;
+  SceneTransform world_from_texture;
 };
 
 /// A medium of the scene file.
 struct MediumDescription {
   std::string name;
   ParsedPlugin plugin;  ///< its name is the value of "string type"
-  Transform world_from_medium;
+  SceneTransform world_from_medium;
 };
 
 /// Media on the two sides of a shape: indices in SceneDescription::media; empty: vacuum.
@@ -51,7 +51,7 @@ struct MediumPair {
 /// A shape with its graphics state.
 struct ShapeDescription {
   ParsedPlugin plugin;
-  Transform world_from_object;
+  SceneTransform world_from_object;
   bool reverse_orientation = false;
   size_t material = 0;               ///< index in SceneDescription::materials
   std::optional<size_t> area_light;  ///< index in SceneDescription::area_lights
@@ -61,13 +61,14 @@ struct ShapeDescription {
 /// A light that is not an area light.
 struct LightDescription {
   ParsedPlugin plugin;
-  Transform world_from_light;
+  SceneTransform world_from_light;
 };
 
 /// An instance that moves. A moving shape is one of an object of its own.
 struct MovingInstance {
   uint32_t object;  ///< index in SceneDescription::objects
   AffineMap start, end;
+  std::array<PreciseTransform::Rows, 2> precise;  ///< of start and end
   Location where;
 };
 
@@ -76,6 +77,10 @@ struct InstanceList {
   std::shared_ptr<std::vector<AffineMap>> maps = std::make_shared<std::vector<AffineMap>>();
   std::vector<uint32_t> objects = {};  ///< index in SceneDescription::objects, by instance
   std::vector<MovingInstance> moving = {};
+  /// Empty, or `maps` in double precision, as soon as one of them places an object far from the origin.
+  std::vector<PreciseTransform::Rows> precise = {};
+
+  void add(uint32_t object, const SceneTransform& map);
 };
 
 /// ObjectBegin ... ObjectEnd, or a moving shape, without a name. A point of a shape is transformed by the shape's
@@ -85,6 +90,7 @@ struct ObjectDescription {
   Location where;
   std::vector<ShapeDescription> shapes;
   InstanceList instances;
+  Vec3d origin = {};  ///< subtracted from the object's coordinates: moved_to_origins
 };
 
 /// Content of a scene file except shapes, which may be large, with overrides applied (scene/overrides.h).

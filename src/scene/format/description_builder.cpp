@@ -378,7 +378,7 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
     fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
   note_still("a texture", name.where);
   scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture),
-                             state_.transform.is_valid() ? state_.transform.start : Transform()});
+                             state_.transform.is_valid() ? state_.transform.start : SceneTransform()});
 }
 
 /// AreaLightSource "" ends the emission of subsequent shapes.
@@ -407,7 +407,7 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
   if (area_light && moves) fail(plugin.where, "a shape that moves cannot give off light: area lights stand still");
   const Location where = plugin.where;
   ShapeDescription made{with_defaults(std::move(plugin), Target::shape),
-                        moves ? Transform() : state_.transform.start,
+                        moves ? SceneTransform() : state_.transform.start,
                         state_.reverse_orientation,
                         state_.material,
                         area_light,
@@ -483,10 +483,10 @@ void DescriptionBuilder::add_instance(uint32_t object, const Location& where) {
     const AffineMap end{state_.transform.end->rows()};
     check(problem_of(end));
     check(problem_of_motion(map, end));
-    list.moving.push_back({object, map, end, where});
+    list.moving.push_back(
+        {object, map, end, {state_.transform.start.precise.rows(), state_.transform.end->precise.rows()}, where});
   } else {
-    list.maps->push_back(map);
-    list.objects.push_back(object);
+    list.add(object, state_.transform.start);
   }
 }
 

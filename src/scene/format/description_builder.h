@@ -42,11 +42,11 @@ class DescriptionBuilder {
 
   // Transforms
   /// Multiplies the active transforms from the right, as pbrt does.
-  void concat(const Transform& transform, std::string_view directive, const Location& where) {
-    change_transform([&transform](const Transform& t) { return t * transform; }, directive, where);
+  void concat(const SceneTransform& transform, std::string_view directive, const Location& where) {
+    change_transform([&transform](const SceneTransform& t) { return t * transform; }, directive, where);
   }
-  void set_transform(const Transform& transform, std::string_view directive, const Location& where) {
-    change_transform([&transform](const Transform&) { return transform; }, directive, where);
+  void set_transform(const SceneTransform& transform, std::string_view directive, const Location& where) {
+    change_transform([&transform](const SceneTransform&) { return transform; }, directive, where);
   }
   void name_transform(const std::string& name, const Location&) { scene_.coordinate_systems[name] = state_.transform; }
   void recall_transform(const std::string& name, const Location& where);

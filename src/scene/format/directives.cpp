@@ -63,17 +63,17 @@ struct Directive {
 };
 
 template <size_t N>
-Vec3 vec3_at(const std::array<double, N>& v, size_t i) {
-  return {static_cast<float>(v[i]), static_cast<float>(v[i + 1]), static_cast<float>(v[i + 2])};
+Vec3d vec3_at(const std::array<double, N>& v, size_t i) {
+  return {v[i], v[i + 1], v[i + 2]};
 }
 
-void scale(Directive d) { d.scene().concat(Transform::scale(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }
+void scale(Directive d) { d.scene().concat(SceneTransform::scale(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }
 
 /// A rotation by 0 about a zero axis is the identity, which some exporters write.
 void rotate(Directive d) {
   const auto v = d.numbers<4>();
-  const Vec3 axis = vec3_at(v, 1);
-  if (axis != Vec3{}) return d.scene().concat(Transform::rotate(v[0], axis), d.name, d.where);
+  const Vec3d axis = vec3_at(v, 1);
+  if (to_float(axis) != Vec3{}) return d.scene().concat(SceneTransform::rotate(v[0], axis), d.name, d.where);
   if (v[0] != 0) fail(d.where, "Rotate about the axis 0 0 0");
 }
 
@@ -85,11 +85,11 @@ void look_at(Directive d) {
   if (up == Vec3d{}) fail(d.where, "LookAt: up is 0 0 0");
   if (!(length(cross(normalize(view), normalize(up))) > kParallel))
     fail(d.where, "LookAt: up is parallel to the direction of view");
-  d.scene().concat(Transform::look_at(vec3_at(v, 0), vec3_at(v, 3), vec3_at(v, 6)), d.name, d.where);
+  d.scene().concat(SceneTransform::look_at(vec3_at(v, 0), vec3_at(v, 3), vec3_at(v, 6)), d.name, d.where);
 }
 
 /// Reads 16 numbers in brackets, in column-major order.
-Transform matrix(Directive& d) {
+SceneTransform matrix(Directive& d) {
   d.bracket(Kind::open_bracket);
   const auto m = d.numbers<16>();
   d.bracket(Kind::close_bracket);
@@ -104,7 +104,7 @@ Transform matrix(Directive& d) {
   Transform::RowsDouble rows;
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 4; ++j) rows[i][j] = m[4 * j + i] / w;
-  return Transform(rows);
+  return SceneTransform(PreciseTransform(rows));
 }
 
 /// Texture "name" "float|spectrum" "class" parameters.
@@ -212,7 +212,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"CoordSysTransform", Block::any, with_name<&Builder::recall_transform>},
     {"CoordinateSystem", Block::any, with_name<&Builder::name_transform>},
     {"Film", Block::options, with_plugin<&Builder::film>},
-    {"Identity", Block::any, [](Directive d) { d.scene().set_transform(Transform(), d.name, d.where); }},
+    {"Identity", Block::any, [](Directive d) { d.scene().set_transform(SceneTransform(), d.name, d.where); }},
     {"Integrator", Block::options, option_plugin<&Scene::integrator>},
     {"LightSource", Block::world, with_plugin<&Builder::light>},
     {"LookAt", Block::any, look_at},
@@ -237,7 +237,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"TransformEnd", Block::world, alone<&Builder::transform_end>},
     {"TransformTimes", Block::options, transform_times},
     {"Translate", Block::any,
-     [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
+     [](Directive d) { d.scene().concat(SceneTransform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
     {"WorldBegin", Block::any, alone<&Builder::world_begin>},
 };
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/transform.h"
+#include "scene/format/scene_transform.h"
 
 namespace frond {
 
@@ -11,11 +11,11 @@ enum class ActiveTransforms : uint8_t { all, start, end };
 
 /// A transform at the start and at the end of a motion (TransformTimes).
 struct MovingTransform {
-  Transform start;
-  std::optional<Transform> end = {};  ///< empty: as `start`; nothing moves
+  SceneTransform start;
+  std::optional<SceneTransform> end = {};  ///< empty: as `start`; nothing moves
 
   bool moves() const { return end.has_value(); }
-  const Transform& at_end() const { return end ? *end : start; }
+  const SceneTransform& at_end() const { return end ? *end : start; }
   bool is_valid() const { return start.is_valid() && at_end().is_valid(); }
   MovingTransform inverse() const { return {start.inverse(), end ? std::optional(end->inverse()) : std::nullopt}; }
   /// Replaces the active transforms by change(transform).
@@ -25,7 +25,7 @@ struct MovingTransform {
       start = change(start);
       return;
     }
-    Transform last = at_end();
+    SceneTransform last = at_end();
     if (active != ActiveTransforms::end) start = change(start);
     if (active != ActiveTransforms::start) last = change(last);
     end = last == start ? std::nullopt : std::optional(last);

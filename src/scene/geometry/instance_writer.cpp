@@ -11,9 +11,24 @@
 
 namespace frond {
 
-InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, const std::vector<std::string>& columns)
-    : file_(path), columns_(columns.size()), rows_left_(rows) {
-  std::vector<NpyField> fields{{.name = "transform", .type = "<f4", .shape = {3, 4}}};
+namespace {
+
+template <class T>
+void append(std::vector<unsigned char>& bytes, T number) {
+  // The largest is that of a float in either type: maps are used in 32 bits.
+  if (!std::isfinite(float(number)))
+    fail({}, "an instance has numbers beyond {:.2g}, the largest of a table", std::numeric_limits<float>::max());
+  const auto* first = reinterpret_cast<const unsigned char*>(&number);
+  bytes.insert(bytes.end(), first, first + sizeof number);
+}
+
+}  // namespace
+
+InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, const std::vector<std::string>& columns,
+                               MapType type)
+    : file_(path), columns_(columns.size()), rows_left_(rows), type_(type) {
+  std::vector<NpyField> fields{
+      {.name = "transform", .type = type == MapType::single ? "<f4" : "<f8", .shape = {3, 4}}};
   for (const std::string& name : columns) {
     const bool is_name = !name.empty() && name != "transform" && std::ranges::all_of(name, [](unsigned char c) {
       return std::isalnum(c) || c == '_' || c == '-' || c == '.';
@@ -30,20 +45,22 @@ InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, c
 }
 
 /// Rows are buffered, so that memory does not grow with their number.
-void InstanceWriter::add(const AffineMap& map, std::span<const float> values) {
-  constexpr size_t kBuffer = 1 << 18;
+void InstanceWriter::add(const PreciseTransform::Rows& map, std::span<const float> values) {
+  constexpr size_t kBuffer = 1 << 20;
   assert(values.size() == columns_ && rows_left_ > 0);
-  const size_t begin = buffer_.size();
-  for (const auto& row : map.rows) buffer_.insert(buffer_.end(), row.begin(), row.end());
-  buffer_.insert(buffer_.end(), values.begin(), values.end());
-  if (!std::all_of(buffer_.begin() + std::ptrdiff_t(begin), buffer_.end(), [](float v) { return std::isfinite(v); }))
-    fail({}, "an instance has numbers beyond {:.2g}, the largest of a table", std::numeric_limits<float>::max());
+  for (const auto& row : map)
+    for (const double v : row) type_ == MapType::single ? append(buffer_, float(v)) : append(buffer_, v);
+  for (const float v : values) append(buffer_, v);
   --rows_left_;
   if (buffer_.size() >= kBuffer) flush();
 }
 
+void InstanceWriter::add(const AffineMap& map, std::span<const float> values) {
+  add(precise_rows(map), values);
+}
+
 void InstanceWriter::flush() {
-  file_.write({reinterpret_cast<const unsigned char*>(buffer_.data()), buffer_.size() * sizeof(float)});
+  file_.write({buffer_.data(), buffer_.size()});
   buffer_.clear();
 }
 
@@ -54,13 +71,17 @@ void InstanceWriter::finish() {
   file_.finish();
 }
 
-AffineMap oriented_map(const Vec3d& position, const Vec3d& normal, double spin, double scale) {
+PreciseTransform::Rows oriented_rows(const Vec3d& position, const Vec3d& normal, double spin, double scale) {
   const Framed frame = Framed::around(normal);
   const Vec3d x = (frame.x * std::cos(spin) + frame.y * std::sin(spin)) * scale;
   const Vec3d y = (frame.y * std::cos(spin) - frame.x * std::sin(spin)) * scale, z = normal * scale;
-  AffineMap map;
-  for (int i = 0; i < 3; ++i) map.rows[size_t(i)] = {float(x[i]), float(y[i]), float(z[i]), float(position[i])};
-  return map;
+  PreciseTransform::Rows rows;
+  for (int i = 0; i < 3; ++i) rows[size_t(i)] = {x[i], y[i], z[i], position[i]};
+  return rows;
+}
+
+AffineMap oriented_map(const Vec3d& position, const Vec3d& normal, double spin, double scale) {
+  return rounded_map(oriented_rows(position, normal, spin, scale));
 }
 
 }  // namespace frond

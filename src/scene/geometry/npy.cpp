@@ -1,5 +1,6 @@
 #include "scene/geometry/npy.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -114,7 +115,8 @@ size_t NpyField::count() const {
 size_t NpyField::bytes() const { return limited_product(count(), size_of_type(type)); }
 
 /// Format versions 1.0 to 3.0 differ in the size of the header's length field.
-NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where) {
+NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where,
+                          uint64_t file_size) {
   const Source source{name, where};
   constexpr size_t kShort = 10, kLong = 12;
   if (file.size() < kLong || std::memcmp(file.data(), kMagic.data(), kMagic.size()) != 0)
@@ -132,7 +134,7 @@ NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name
   }
   layout.begin = start + length;
   if (layout.row_bytes == 0 && layout.rows > 0) source.refuse("its rows are empty");
-  const size_t there = layout.row_bytes == 0 ? 0 : (file.size() - layout.begin) / layout.row_bytes;
+  const size_t there = layout.row_bytes == 0 ? 0 : (std::max<uint64_t>(file_size, file.size()) - layout.begin) / layout.row_bytes;
   if (there < layout.rows)
     source.refuse(fmt::format("the file is cut short: it says {} rows and has {}", layout.rows, there));
   return layout;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,8 +31,9 @@ struct NpyLayout {
 };
 
 /// Throws InputError at `where` for a file that is not a .npy file, is truncated, or is in Fortran order. `name` names
-/// the data in messages.
-NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where);
+/// the data in messages. `file_size`: of the whole file, if `file` is only its beginning.
+NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where,
+                          uint64_t file_size = 0);
 
 /// Returns a file's header, which the rows follow. Offsets follow from the order of the fields.
 std::string npy_header(std::span<const NpyField> fields, size_t rows);

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/float4.h"
-#include "core/transform.h"
+#include "core/precise_transform.h"
 
 namespace frond {
 
@@ -77,21 +77,10 @@ struct AffineMap {
   Vec3 column(size_t j) const { return {rows[0][j], rows[1][j], rows[2][j]}; }
 };
 
-/// A transform and its inverse in double precision. The composition of both is the identity up to double rounding, even
-/// for shapes whose own coordinates are much larger than those of the scene.
-class PreciseTransform {
- public:
-  explicit PreciseTransform(const Transform& t);
-
-  Vec3d point(const Vec3d& p) const { return vector(p) + translation_; }
-  Vec3d vector(const Vec3d& v) const { return x_ * v.x + y_ * v.y + z_ * v.z; }
-  Vec3d inverse_point(const Vec3d& p) const { return inverse_vector(p - translation_); }
-  Vec3d inverse_vector(const Vec3d& v) const { return {dot(row_x_, v), dot(row_y_, v), dot(row_z_, v)}; }
-
- private:
-  Vec3d x_, y_, z_, translation_;  ///< images of the axes and the origin
-  Vec3d row_x_, row_y_, row_z_;    ///< rows of the inverse
-};
+/// Returns a map in single precision.
+AffineMap rounded_map(const PreciseTransform::Rows& rows);
+/// Returns the numbers of a map.
+PreciseTransform::Rows precise_rows(const AffineMap& map);
 
 /// Returns the reason why a map is invalid: it has no inverse, or its scale would make ray coordinates overflow or
 /// underflow in the object's space; "" if it is valid.

@@ -13,7 +13,7 @@ constexpr Param kInstances[] = {
     {.name = "filename",
      .kind = ParamKind::string,
      .doc = "Instance table: a NumPy file (.npy) with one row for each instance: \"transform\" "
-            "(the three rows of a matrix) and any other numbers, all of them float32.",
+            "(the three rows of a matrix) and any other numbers, all of them float32; \"transform\" may be float64.",
      .required = true}};
 
 MadeShape make_instances(const Params& p, const ShapePlacement&) {

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/shape.h"
+#include "scene/math/affine_map.h"
 #include "scene/shapes/bilinear.h"
 #include "scene/shapes/ply.h"
 #include "scene/shapes/subdivision.h"
@@ -96,12 +97,27 @@ MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
   return std::vector{oriented(std::move(mesh), placement)};
 }
 
+/// Warns if a file has rounded its vertices: to steps that a leaf's shape shows.
+void warn_of_steps(const Params& p, const PlyMesh& file) {
+  constexpr double kLargest = 1. / 256, kLargestShare = 1. / 2048;
+  if (file.step == 0) return;
+  Bounds bounds;
+  for (const Vec3& at : file.mesh.p) bounds.add(at);
+  const Vec3 size = bounds.max - bounds.min;
+  if (file.step < kLargest && file.step < kLargestShare * double(largest_coordinate(size))) return;
+  p.warn("filename", fmt::format("its vertices are 32-bit floats up to {:.3g} units from the origin, where their step is "
+                                 "{:g} units; \"property double x\" (y, z) keeps such coordinates",
+                                 file.step * (1 << 23), file.step));
+}
+
 /// Errors in the file are reported at the parameter that names it.
 MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
   const std::filesystem::path path = p.file("filename");
   const std::string bytes = read_file_bytes(path, p.where("filename"));
   try {
-    PlyMesh file = read_ply_bytes(bytes, path.string());
+    const std::vector<double> origin = p.reals("origin");
+    PlyMesh file = read_ply_bytes(bytes, path.string(), {origin[0], origin[1], origin[2]});
+    warn_of_steps(p, file);
     if (file.ignored > 0)
       p.warn("filename",
              fmt::format("{} faces are neither triangles nor quadrilaterals and are left out, as in pbrt-v4",
@@ -154,6 +170,11 @@ constexpr Param kPlyMesh[] = {{.name = "filename",
                                .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which become "
                                       "bilinear patches; .ply.gz: compressed.",
                                .required = true},
+                              {.name = "origin",
+                               .kind = ParamKind::point3,
+                               .default_value = std::array<double, 3>{0, 0, 0},
+                               .doc = "Point that is subtracted from the file's vertices, before they are rounded to 32 "
+                                      "bits and transformed: for files in map coordinates."},
                               kAlphaParam};
 constexpr Param kLoopSubdivision[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Vertices of the control mesh.", .list = true, .required = true},

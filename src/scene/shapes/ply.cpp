@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/excerpt.h"
+#include "core/precise_transform.h"
 #include "core/stop.h"
 #include "scene/shapes/ply_header.h"
 #include "scene/shapes/ply_source.h"
@@ -112,8 +113,8 @@ std::string unused_content(const PlyHeader& header, const MeshLayout& layout) {
 template <class Source>
 class BodyReader {
  public:
-  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
-      : source_(source), header_(header), layout_(layout), result_(result), mesh_(result.mesh) {}
+  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, const Vec3d& origin, PlyMesh& result)
+      : source_(source), header_(header), layout_(layout), origin_(origin), result_(result), mesh_(result.mesh) {}
 
   /// Elements are read in file order; unknown ones are skipped.
   void read() {
@@ -163,18 +164,29 @@ class BodyReader {
     if (layout.has_normals) mesh_.n.reserve(count);
     if (layout.has_uv) mesh_.uv.reserve(count);
     std::array<float, kSlots + 1> v{};
+    Vec3d p;
     for_each_row(
-        [&](const PlyProperty& p, size_t i) {
+        [&](const PlyProperty& property, size_t i) {
           const size_t slot = layout.slots[i];
-          if (slot == kNoSlot) return skip(p);
-          v[slot] = static_cast<float>(number(p.type));
-          if (!std::isfinite(v[slot])) fail_row(fmt::format("{} is {}", p.name, v[slot]));
+          if (slot == kNoSlot) return skip(property);
+          const double value = number(property.type);
+          v[slot] = static_cast<float>(value);
+          if (!std::isfinite(v[slot])) fail_row(fmt::format("{} is {}", property.name, v[slot]));
+          (slot == 0 ? p.x : slot == 1 ? p.y : slot == 2 ? p.z : unused_) = value;
         },
         [&] {
-          mesh_.p.push_back({v[0], v[1], v[2]});
+          if (row_ == 0) note_step(p);
+          mesh_.p.push_back(to_float(p - origin_));
           if (layout.has_normals) mesh_.n.push_back({v[3], v[4], v[5]});
           if (layout.has_uv) mesh_.uv.push_back({v[6], v[7]});
         });
+  }
+
+  /// Text has as many digits as its writer chose, whatever the header says.
+  void note_step(const Vec3d& first) {
+    if (header_.format == PlyFormat::ascii || !is_far(first)) return;
+    for (const PlyProperty& p : element_->properties)
+      if (slot_of(p.name) < 3 && p.type == PlyType::float32) result_.step = float_step(largest_coordinate(first));
   }
 
   /// Memory is reserved for no more faces than the rest of the file can contain.
@@ -234,22 +246,24 @@ class BodyReader {
   Source& source_;
   const PlyHeader& header_;
   const MeshLayout& layout_;
+  const Vec3d origin_;
   PlyMesh& result_;
   TriangleMesh& mesh_;
   const PlyElement* element_ = nullptr;
   uint64_t row_ = 0;
+  double unused_ = 0;
 };
 
 }  // namespace
 
-PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
+PlyMesh read_ply_text(std::string_view bytes, const std::string& name, const Vec3d& origin) {
   const auto file = std::make_shared<const std::string>(name);
   const PlyHeader header = read_ply_header(bytes, file);
   const Location end{file, header.lines, 1};
   const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
   PlyMesh result;
   result.unused = unused_content(header, layout);
-  const auto read_from = [&](auto source) { BodyReader(source, header, layout, result).read(); };
+  const auto read_from = [&](auto source) { BodyReader(source, header, layout, origin, result).read(); };
   if (header.format == PlyFormat::ascii)
     read_from(ply::AsciiSource(bytes, header, file));
   else
@@ -257,10 +271,12 @@ PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
   return result;
 }
 
-PlyMesh read_ply_bytes(const std::string& bytes, const std::string& name) {
-  return read_ply_text(is_gzip(bytes) ? unpack_gzip(bytes, name, {}) : bytes, name);
+PlyMesh read_ply_bytes(const std::string& bytes, const std::string& name, const Vec3d& origin) {
+  return read_ply_text(is_gzip(bytes) ? unpack_gzip(bytes, name, {}) : bytes, name, origin);
 }
 
-PlyMesh read_ply(const std::filesystem::path& path) { return read_ply_bytes(read_file_bytes(path, {}), path.string()); }
+PlyMesh read_ply(const std::filesystem::path& path, const Vec3d& origin) {
+  return read_ply_bytes(read_file_bytes(path, {}), path.string(), origin);
+}
 
 }  // namespace frond

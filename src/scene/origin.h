@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "core/log.h"
+#include "scene/format/description.h"
+#include "scene/registry.h"
+
+namespace frond {
+
+/// Points of a scene file's spaces that become the origins of the rendered ones. Positions are kept in double precision
+/// until these are subtracted, then rounded to 32 bits: rays lose no precision far from the origin of the file.
+struct SceneOrigins {
+  Vec3d world{};
+  std::vector<Vec3d> objects{};  ///< by index in the description
+  /// Whether any origin is not 0, or a shape has far points that its transform brings back: `moved_to` has something to
+  /// do. Ordinary scenes keep their bits without it.
+  bool move_something = false;
+};
+
+/// Returns the origins. That of a space is 0, unless nearly all positions in it are far from 0 (is_far): then their
+/// median along each axis, rounded to whole units. Reads the beginning of meshes and instance tables. Warns of shapes
+/// that are so far from the others that their coordinates are rounded to a visible part of their size.
+SceneOrigins find_origins(const SceneDescription& description, const Log& log);
+
+/// Returns the description in coordinates relative to the origins: transforms, points among the parameters, targets.
+SceneDescription moved_to(const SceneOrigins& origins, SceneDescription description, const Registry& registry);
+/// The same without shapes.
+void move_settings(const Vec3d& origin, const Registry& registry, SceneSettings& settings);
+
+}  // namespace frond
