@@ -125,7 +125,7 @@ class OriginFinder {
     double weight = 0, radius = 0;
     if (shape.plugin.name == "plymesh") {
       if (const auto sample = sample_ply(path_of(params, "filename"))) {
-        for (const Vec3d& p : sample->points) box.add(p);
+        for (const Vec3d& p : sample->points) box.add(p - point_of(params, "origin"));
         weight = double(sample->vertices);
       }
     } else {
@@ -155,6 +155,13 @@ class OriginFinder {
     for (const PreciseTransform::Rows& map : sample->maps)
       add((placement * PreciseTransform(map)).rows(), size_t(placed - objects.begin()),
           double(sample->rows) / double(sample->maps.size()), anchors);
+  }
+
+  /// A single point; 0 if it is not given.
+  static Vec3d point_of(const std::vector<ParsedParam>& params, std::string_view name) {
+    const ParsedParam* p = find_param(params, name);
+    const auto* v = p ? std::get_if<std::vector<double>>(&p->values) : nullptr;
+    return v && v->size() == 3 ? Vec3d{(*v)[0], (*v)[1], (*v)[2]} : Vec3d{};
   }
 
   static std::string text_of(const std::vector<ParsedParam>& params, std::string_view name) {
