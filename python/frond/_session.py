@@ -12,10 +12,12 @@ from ._values import array_of, file_text, flag, named, number, scalar, texts, wh
 
 def _show(progress):
     """Returns the progress callback: None, the given function, or for True one that writes a line to standard error."""
+    if progress is None or progress is False:
+        return None
     if progress is not True:
-        if progress and not callable(progress):
+        if not callable(progress):
             raise TypeError(f"progress: a function of the share that is done, True or None is needed, not {named(progress)}")
-        return progress or None
+        return progress
     import sys
 
     def line(share):
@@ -257,6 +259,7 @@ class Image:
 
     def __getitem__(self, channel):
         names, array = self._load()
+        checked_text(channel, "channel")
         parts = [name for name in names if name.startswith(f"{channel}.")]
         if channel not in names and parts:
             return self._several(parts)

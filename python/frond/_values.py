@@ -152,7 +152,7 @@ def numbers(values, what, unit="", *, missing=False):
     values = in_unit(values, what, unit)
     if isinstance(values, str):
         from . import _frond
-        found = _frond.parse_numbers(values)
+        found = _frond.parse_numbers(values) if values.isascii() else None
         if found is None:
             raise ValueError(f"{what}: a list of numbers, as in 0,8,30 or first:last:step, is needed, not {named(values)}")
         return found
@@ -245,7 +245,7 @@ def table_text(table, what):
     """Returns a table as CSV: a data frame, a Dataset of one dimension or more, a structured array, or a dictionary of columns."""
     if hasattr(table, "data_vars") and hasattr(table, "to_dataframe"):
         table = table.to_dataframe()
-    if hasattr(table, "reset_index"):
+    if hasattr(table, "reset_index") and hasattr(table, "columns"):
         if any(name is not None for name in table.index.names):
             table = table.reset_index()
         if getattr(table.columns, "nlevels", 1) > 1:
@@ -261,6 +261,9 @@ def table_text(table, what):
         raise TypeError(f"{what}: CSV as a text, or a table with named columns is needed, not {named(table)}")
     if not columns:
         raise ValueError(f"{what}: a table with columns is needed, not an empty one")
+    for name, values in columns.items():
+        if not hasattr(values, "__iter__") or isinstance(values, (str, bytes, set, frozenset)) or getattr(values, "ndim", 1) != 1:
+            raise TypeError(f"{what}: the column {name!r} is a list of values, not {named(values)}")
     lists = {name: [None if _is_missing(scalar(v)) else scalar(v) for v in values] for name, values in columns.items()}
     lengths = {name: len(values) for name, values in lists.items()}
     if len(set(lengths.values())) > 1:

@@ -17,6 +17,7 @@ using namespace nb::literals;
 LeafParams leaf_of(SessionHandle& owner, const std::string& material) {
   const Registry& registry = owner.session().registry();
   const MaterialWords words = parse_material(material_text({material}), registry);
+  if (!find_param(words.info, "specimen")) fail({}, "\"{}\" is no leaf: leaf_solved is needed", words.info.name);
   SceneDescription description = scene_of_materials(registry);
   const RefusingLog refusing;
   const GivenWavelengths any({551});
