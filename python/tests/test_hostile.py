@@ -123,6 +123,7 @@ CALLS = [
     ('frond.export("", format="csv", output="e.csv", wavelengths=551, angles=0)', BAD_INPUT, "material"),
     ('frond.bench("")', BAD_INPUT, "material"),
     ('frond.leaf_table("", [551])', BAD_INPUT, "material"),
+    ('frond.leaf_table("diffuse", [551])', "InputError", "is no leaf: leaf_solved is needed"),
     ('frond.load("scene.pbrt", swap="leaf=")', BAD_INPUT, "swap"),
     ('frond.load("")', BAD_INPUT, "scene|file"),
     ('frond.load("scene.pbrt", wavelengths="")', BAD_INPUT, "wavelengths"),
