@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "render/plugins.h"
 #include "render/render_loop.h"
 #include "scene/format/parser.h"

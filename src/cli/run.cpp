@@ -10,7 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/pbrt_options.h"
 #include "cli/progress.h"
-#include "core/problems.h"
+#include "core/messages/problems.h"
 #include "render/checkpoint.h"
 #include "render/parts/inputs.h"
 #include "report/text_output.h"

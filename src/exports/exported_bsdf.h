@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "core/material.h"
 #include "core/parallel.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "image/spectral_layout.h"
 
 namespace frond {

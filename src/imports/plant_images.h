@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "image/image_file.h"
 #include "imports/imported_scene.h"
 

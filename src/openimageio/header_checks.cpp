@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 namespace {

@@ -12,7 +12,7 @@
 #include <optional>
 #include <system_error>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "openimageio/alpha.h"
 #include "openimageio/header_checks.h"
 #include "openimageio/webp.h"

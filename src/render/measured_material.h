@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "core/material.h"
 #include "instruments/beam.h"
 #include "scene/format/description.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "core/log.h"
+#include "core/messages/log.h"
 
 namespace frond {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "core/parallel.h"
-#include "core/problems.h"
+#include "core/messages/problems.h"
 #include "scene/geometry/geometry.h"
 #include "scene/resolver.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "scene/format/description.h"
 #include "scene/registry.h"
 

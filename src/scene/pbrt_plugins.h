@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 #include "scene/format/description.h"
 #include "scene/format/unsupported.h"
 #include "scene/registry.h"

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/problems.h"
+#include "core/messages/problems.h"
 #include "scene/format/known_names.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 #include "core/stop.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <system_error>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "spectra/named.h"
 #include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"

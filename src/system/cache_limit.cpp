@@ -4,7 +4,7 @@
 #include <chrono>
 #include <vector>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 
 namespace frond {
 namespace {

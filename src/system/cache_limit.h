@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/log.h"
+#include "core/messages/log.h"
 
 namespace frond {
 

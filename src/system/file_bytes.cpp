@@ -6,7 +6,7 @@
 #include <cstring>
 #include <memory>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "core/parallel.h"
 #include "system/file_uses.h"
 

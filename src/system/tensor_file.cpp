@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 namespace {

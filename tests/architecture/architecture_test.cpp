@@ -46,7 +46,7 @@ const Layers kAllowed{
 /// Inside a layer that has folders: what each folder may include of the same layer, besides itself. "" is what lies in
 /// the layer itself.
 const std::map<std::string, Layers> kAllowedInside{
-    {"core", {{"units", {}}, {"", {"units"}}}},
+    {"core", {{"units", {}}, {"", {"units"}}, {"messages", {"", "units"}}}},
     {"scene",
      {{"math", {}},
       {"format", {"math"}},

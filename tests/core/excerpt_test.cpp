@@ -1,11 +1,11 @@
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 
 namespace frond {
 namespace {

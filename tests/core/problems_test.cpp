@@ -1,4 +1,4 @@
-#include "core/problems.h"
+#include "core/messages/problems.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // Scene files up to the description: tokens, directives, includes, pbrt's plug-ins.
 
-#include "core/problems.h"
+#include "core/messages/problems.h"
 #include "render/plugins.h"
 #include "scene/math/motion.h"
 #include "scene/read_scene.h"

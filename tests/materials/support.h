@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "core/material.h"
 #include "materials/registry.h"
 #include "spectra/tabulated.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 #include "render/plugins.h"
 #include "scene/format/directives.h"
 #include "scene/format/parser.h"

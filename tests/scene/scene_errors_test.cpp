@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

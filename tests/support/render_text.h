@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "render/render_loop.h"

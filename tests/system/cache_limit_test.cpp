@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

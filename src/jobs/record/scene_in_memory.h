@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problems.h"
+#include "core/messages/problems.h"
 #include "jobs/record/arguments.h"
 #include "scene/format/description.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 
 namespace frond {
 

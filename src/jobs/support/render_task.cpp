@@ -6,7 +6,7 @@
 #include <charconv>
 #include <filesystem>
 
-#include "core/problems.h"
+#include "core/messages/problems.h"
 #include "jobs/record/common_params.h"
 #include "render/film/adaptive.h"
 #include "scene/cameras/films.h"

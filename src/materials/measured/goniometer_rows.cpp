@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "core/spectrum.h"
 #include "system/text_table.h"
 

@@ -137,7 +137,7 @@ struct SceneSettings {
   /// Resolves a file name: relative to the main file as in pbrt, else relative to the file that contains the name, else
   /// relative to the working directory. A name given on the command line is relative to the working directory first.
   /// Backslashes are taken as slashes if no such file exists. A file outside the scene's folder that the scene names is
-  /// marked as foreign (core/excerpt.h).
+  /// marked as foreign (core/messages/excerpt.h).
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
 };
 

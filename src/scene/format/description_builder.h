@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 #include "scene/format/description.h"
 
 namespace frond {

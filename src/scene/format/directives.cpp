@@ -6,7 +6,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 

@@ -4,14 +4,14 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/log.h"
-#include "core/problems.h"
+#include "core/messages/log.h"
+#include "core/messages/problems.h"
 #include "scene/format/description.h"
 
 namespace frond {
 
 /// Reads a scene file in pbrt-v4's format with all included files; "-" is standard input. After an error, the parser
-/// continues at the next directive and throws all errors at the end (core/problems.h), with file, line and column.
+/// continues at the next directive and throws all errors at the end (core/messages/problems.h), with file, line and column.
 /// Files may be compressed (gzip).
 SceneDescription parse_scene(const std::filesystem::path& path, const Log& log);
 

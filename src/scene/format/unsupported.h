@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/log.h"
+#include "core/messages/log.h"
 
 namespace frond {
 

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <span>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "scene/geometry/npy.h"
 #include "system/file_bytes.h"
 #include "system/file_range.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "core/precise_transform.h"
 #include "core/stop.h"
 #include "scene/shapes/ply_header.h"

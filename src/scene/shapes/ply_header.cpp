@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 namespace {

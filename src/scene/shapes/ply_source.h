@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "scene/format/tokenizer.h"
 #include "scene/shapes/ply_header.h"
 

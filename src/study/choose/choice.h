@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "study/choose/pilot.h"
 
 namespace frond::choose {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "study/compare/paired_render.h"
 
 namespace frond::compare {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/log.h"
+#include "core/messages/log.h"
 #include "scene/resolver.h"
 #include "study/paired_films.h"
 

@@ -1,8 +1,8 @@
-#include "core/log.h"
+#include "core/messages/log.h"
 
 #include <cstdio>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 namespace frond {
 

@@ -1,4 +1,4 @@
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 
 #include <algorithm>
 #include <mutex>
