@@ -10,8 +10,7 @@ function(run)
   endif()
 endfunction()
 # In place of the compiler: the words of Ninja's rules are -o FILE and -MF FILE.
-file(WRITE "${WORK_DIR}/copy" [=[#!/bin/sh
-from=$1; shift
+file(WRITE "${WORK_DIR}/copy" "#!/bin/sh\nfrom='${BUILD_DIR}'\n" [=[
 previous=
 for word; do
   case "$previous" in
@@ -28,7 +27,7 @@ file(STRINGS "${BUILD_DIR}/CMakeCache.txt" options
      REGEX "^(CMAKE_BUILD_TYPE|CMAKE_CXX_COMPILER|CMAKE_CXX_FLAGS|FROND_INSTRUCTIONS|FROND_PRECOMPILED_HEADERS):")
 list(TRANSFORM options PREPEND "-D")
 run(${CMAKE_COMMAND} -S "${SOURCE_DIR}" -B "${build}" -G Ninja ${options} -DFROND_PYTHON=OFF -DFROND_TESTS=OFF -DFROND_BENCH=OFF
-    "-DCMAKE_CXX_COMPILER_LAUNCHER=${WORK_DIR}/copy;${BUILD_DIR}")
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=${WORK_DIR}/copy")
 run(${CMAKE_COMMAND} --build "${build}" --target frond)
 run(${CMAKE_COMMAND} --install "${build}" --prefix "${prefix}")
 run("${prefix}/bin/frond" --version)
