@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "core/stop.h"
 #include "scene/format/known_names.h"
@@ -61,16 +60,20 @@ void check_emitter(const ShapeGeometry& geometry, const Location& where) {
 void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, const Log& log) {
   const auto* mesh = std::get_if<MeshPtr>(&geometry);
   if (!mesh) return;
-  std::set<std::array<std::array<float, 3>, 3>> faces;
-  size_t doubles = 0;
-  StopPoll poll;
+  using Corners = std::array<std::array<float, 3>, 3>;
+  std::vector<Corners> faces;
+  faces.reserve((*mesh)->triangles.size());
   for (const auto& t : (*mesh)->triangles) {
-    poll();
-    std::array<std::array<float, 3>, 3> corners;
+    Corners& corners = faces.emplace_back();
     for (size_t k = 0; k < 3; ++k) corners[k] = {(*mesh)->p[t[k]].x, (*mesh)->p[t[k]].y, (*mesh)->p[t[k]].z};
     std::sort(corners.begin(), corners.end());
-    doubles += !faces.insert(corners).second;
   }
+  StopPoll poll;
+  std::ranges::sort(faces, [&poll](const Corners& a, const Corners& b) {
+    poll();
+    return a < b;
+  });
+  const size_t doubles = std::ranges::unique(faces).size();
   if (doubles > 0)
     log.warn(where, fmt::format(
                         "{} of {} faces of this leaf lie on one another: every ray passes two leaves there; a leaf has "
