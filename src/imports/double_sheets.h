@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ struct DoubleSheet {
 
 /// Finds connected sheets of triangles that lie behind another sheet, which faces the other way, within `tolerance`
 /// (units of the meshes). Returns one entry for each material, and removes the second sheets of the materials that
-/// `remove` states.
-std::vector<DoubleSheet> double_sheets(std::vector<PlantMesh>& meshes, double tolerance,
-                                       const std::vector<bool>& remove);
+/// `remove` states. Returns nothing, and changes nothing, if too many triangles lie at one place to compare them.
+std::optional<std::vector<DoubleSheet>> double_sheets(std::vector<PlantMesh>& meshes, double tolerance,
+                                                      const std::vector<bool>& remove);
 
 }  // namespace frond

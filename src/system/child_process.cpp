@@ -1,12 +1,15 @@
 #include "system/child_process.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -14,8 +17,10 @@
 #include <memory>
 #include <span>
 #include <sstream>
+#include <thread>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 extern char** environ;
 
@@ -46,6 +51,22 @@ class StreamFile {
 
  private:
   std::unique_ptr<FILE, int (*)(FILE*)> file_;
+};
+
+/// Pipe whose two ends are closed in programs that this process starts, unless they are passed to them.
+struct Pipe {
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) fail({}, "cannot make a pipe: {}", std::strerror(errno));
+    reader = ends[0], writer = ends[1];
+  }
+  ~Pipe() {
+    close(reader);
+    close(writer);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  int reader = -1, writer = -1;
 };
 
 /// Returns the child's status; a signal does not end the wait.
@@ -144,6 +165,24 @@ std::optional<ChildResult> run_child(const std::vector<std::string>& command, co
   if (!child) return {};
   const int status = wait_for(*child);
   return ChildResult{status, streams[1].content(), streams[2].content()};
+}
+
+std::optional<ChildResult> run_dependent(const std::vector<std::string>& command) {
+  Pipe input;
+  std::array<StreamFile, 2> streams;
+  const auto child = start(command, std::array{input.reader, streams[0].descriptor(), streams[1].descriptor()});
+  if (!child) return {};
+  int status = 0;
+  for (auto pause = std::chrono::milliseconds(1); waitpid(*child, &status, WNOHANG) == 0;) {
+    if (is_stop_requested()) {
+      kill(*child, SIGKILL);
+      wait_for(*child);
+      throw Stopped();
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::milliseconds(20));
+  }
+  return ChildResult{status, streams[0].content(), streams[1].content()};
 }
 
 std::optional<int> run_attached(const std::vector<std::string>& command, const std::filesystem::path& output) {

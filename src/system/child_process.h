@@ -17,6 +17,12 @@ struct ChildResult {
 /// nothing if there is no such program. Throws InputError if it cannot be run for any other reason.
 std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input);
 
+/// Runs a program of frond's own until it ends, or this process does, by whatever signal: its standard input is a pipe
+/// that nobody writes to, whose end the program has to watch. While it waits it looks at the stop: the program is then
+/// killed, and Stopped thrown. Returns nothing if there is no such program. Throws InputError if it cannot be run for
+/// any other reason.
+std::optional<ChildResult> run_dependent(const std::vector<std::string>& command);
+
 /// Runs a program, which is searched for in PATH, on this process's standard streams, and waits until it ends. As in
 /// system(3), SIGINT from the terminal ends the program and not this process; SIGTERM and SIGHUP are passed on to it.
 /// With `output`, what the program prints goes to this file, which is replaced. Returns the status as from waitpid, or

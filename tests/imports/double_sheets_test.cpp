@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace frond {
 namespace {
 
@@ -35,7 +37,7 @@ PlantMesh sheet(double z, bool front, uint32_t material = 0, int n = 8, bool dia
 }
 
 std::vector<DoubleSheet> found(std::vector<PlantMesh> meshes, double tolerance = 0.002) {
-  return double_sheets(meshes, tolerance, std::vector<bool>(2));
+  return double_sheets(meshes, tolerance, std::vector<bool>(2)).value();
 }
 
 /// One mesh of both.
@@ -91,7 +93,7 @@ TEST(DoubleSheets, AThinTubeIsNone) {
 TEST(DoubleSheets, RemovalKeepsTheFirstSheetWhole) {
   std::vector<PlantMesh> meshes{joined(sheet(0, true), sheet(0, false)), sheet(2, true, 1), sheet(2, false, 1)};
   const auto sheets = double_sheets(meshes, 0.002, {true, false});
-  EXPECT_THAT(sheets, ElementsAre(DoubleSheet{0, 128, 0}, DoubleSheet{1, 128, 0}));
+  EXPECT_THAT(*sheets, ElementsAre(DoubleSheet{0, 128, 0}, DoubleSheet{1, 128, 0}));
   ASSERT_EQ(meshes.size(), 3u);
   EXPECT_EQ(meshes[0].triangles, sheet(0, true).triangles);
   EXPECT_EQ(meshes[2].triangles.size(), 128u);
@@ -101,6 +103,43 @@ TEST(DoubleSheets, RemovalKeepsTheFirstSheetWhole) {
 TEST(DoubleSheets, SizesMayDiffer) {
   EXPECT_THAT(found({sheet(0, true, 0, 1), joined(sheet(5, true, 0, 40), sheet(0, false, 0, 1))}),
               ElementsAre(DoubleSheet{0, 2, 0}));
+}
+
+/// The search would take hours if it depended on the ratio of the triangles' sizes, or compared equal ones.
+TEST(DoubleSheets, SizesMayDifferByAMillionAndTrianglesBeEqual) {
+  PlantMesh mesh{{}, "mesh"};
+  mesh.p = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 0}, {2 + 1e-6f, 2, 0}, {2, 2 + 1e-6f, 0}, {1, 1, 1}};
+  for (int i = 0; i < 100'000; ++i) {
+    mesh.triangles.push_back({0, 1, 6});
+    mesh.triangles.push_back({3, 4, 5});
+  }
+  EXPECT_THAT(found({mesh}, 1e-6), IsEmpty());
+  for (int i = 0; i < 100'000; ++i) mesh.triangles.push_back({1, 0, 6});
+  EXPECT_THAT(found({mesh}, 1e-6), ElementsAre(DoubleSheet{0, 100'000, 0}));
+}
+
+/// Of triangles that all hide each other not every pair is compared.
+TEST(DoubleSheets, ASearchWithoutEndIsGivenUp) {
+  std::vector<PlantMesh> meshes(2, PlantMesh{{}, "mesh"});
+  for (uint32_t i = 0; i < 20'000; ++i)
+    for (const bool front : {true, false}) {
+      PlantMesh& mesh = meshes[front ? 0 : 1];
+      const float y = 1 + 1e-6f * float(i);
+      for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, y, 0}}) mesh.p.push_back(p);
+      mesh.triangles.push_back(front ? std::array{3 * i, 3 * i + 1, 3 * i + 2}
+                                     : std::array{3 * i, 3 * i + 2, 3 * i + 1});
+    }
+  const size_t before = meshes[1].triangles.size();
+  EXPECT_FALSE(double_sheets(meshes, 0.002, {true, true}).has_value());
+  EXPECT_EQ(meshes[1].triangles.size(), before);
+}
+
+TEST(DoubleSheets, TheSearchObservesTheStop) {
+  std::stop_source stop;
+  stop.request_stop();
+  const StopScope scope(stop.get_token());
+  std::vector<PlantMesh> meshes{sheet(0, true)};
+  EXPECT_THROW(double_sheets(meshes, 0.002, {true, true}), Stopped);
 }
 
 }  // namespace
