@@ -2,8 +2,13 @@
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -11,6 +16,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "assimp/model_files.h"
 #include "assimp/scene_conversion.h"
@@ -32,6 +38,38 @@ void keep_readers(Assimp::Importer& importer) {
   }
 }
 
+/// Collects the library's warnings while it exists, each once: about what it leaves out.
+class Messages {
+ public:
+  explicit Messages(std::vector<std::string>& warnings) {
+    Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new Stream(warnings), Assimp::Logger::Warn);
+  }
+  ~Messages() { Assimp::DefaultLogger::kill(); }
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+
+ private:
+  /// The logger deletes it.
+  class Stream final : public Assimp::LogStream {
+   public:
+    explicit Stream(std::vector<std::string>& warnings) : warnings_(warnings) {}
+    /// `text`: "Warn,  T0: MESSAGE\n".
+    void write(const char* text) override {
+      constexpr size_t kMost = 20, kLongest = 300;
+      std::string message = text;
+      if (const size_t head = message.find(": "); head != message.npos) message.erase(0, head + 2);
+      while (message.ends_with('\n')) message.pop_back();
+      message = "the reader says: " + message.substr(0, kLongest);
+      if (warnings_.size() < kMost && std::ranges::find(warnings_, message) == warnings_.end())
+        warnings_.push_back(message);
+    }
+
+   private:
+    std::vector<std::string>& warnings_;
+  };
+};
+
 /// Materials keep their names, though equal ones could be joined. Points and lines are left out.
 ImportedScene read(const std::filesystem::path& path) {
   ProcessLimits limits;
@@ -39,6 +77,9 @@ ImportedScene read(const std::filesystem::path& path) {
   keep_readers(importer);
   auto* files = new ModelFiles(path, limits);
   importer.SetIOHandler(files);  // which the importer deletes
+  files->check();
+  std::vector<std::string> warnings;
+  const Messages messages(warnings);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   constexpr unsigned kSteps =
       aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices;
@@ -51,8 +92,22 @@ ImportedScene read(const std::filesystem::path& path) {
   }
   ImportedScene result = converted(*scene);
   result.origin = files->origin();
+  result.losses = files->losses();
   result.warnings = std::move(refusals);
+  result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
   return result;
+}
+
+/// Ends this process when frond ends, killed or not: standard input is a pipe that frond holds open and never writes
+/// to.
+void end_with_parent() {
+  std::thread([] {
+    char byte = 0;
+    ssize_t n = 0;
+    do n = ::read(STDIN_FILENO, &byte, 1);
+    while (n > 0 || (n < 0 && errno == EINTR));
+    _exit(1);
+  }).detach();
 }
 
 }  // namespace
@@ -64,6 +119,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: frond-assimp MODEL (started by frond import)\n", stderr);
     return 2;
   }
+  frond::end_with_parent();
   try {
     const std::string bytes = frond::encode(frond::read(argv[1]));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0) return 0;

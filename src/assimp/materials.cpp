@@ -18,12 +18,6 @@ float number(const aiMaterial& m, const char* key, unsigned type, unsigned index
   return given && std::isfinite(value) ? value : otherwise;
 }
 
-/// Returns whether a colour is given, and not black.
-bool has_color(const aiMaterial& m, const char* key, unsigned type, unsigned index) {
-  aiColor4D c;
-  return aiGetMaterialColor(&m, key, type, index, &c) == aiReturn_SUCCESS && (c.r > 0 || c.g > 0 || c.b > 0);
-}
-
 /// Returns the index of an image; adds it unless it is there. The name of an embedded image begins with *.
 int32_t image_index(const std::string& name, const aiScene& scene, std::vector<ImportedImage>& images) {
   ImportedImage image{name, {}, {}};
@@ -71,10 +65,16 @@ ImportedTexture texture(const aiMaterial& m, aiTextureType type, const aiScene& 
   return t;
 }
 
-/// glTF's base colour, or the diffuse colour of other formats.
+/// Whether the colour is that of glTF's KHR_materials_pbrSpecularGlossiness, which replaces the base colour.
+bool is_specular_glossy(const aiMaterial& m) {
+  float glossiness = 0;
+  return m.Get(AI_MATKEY_GLOSSINESS_FACTOR, glossiness) == aiReturn_SUCCESS;
+}
+
+/// glTF's base colour, or the diffuse colour of its extension and of other formats.
 std::array<float, 3> base_color(const aiMaterial& m) {
   aiColor4D c(0.5f, 0.5f, 0.5f, 1);
-  if (m.Get(AI_MATKEY_BASE_COLOR, c) != aiReturn_SUCCESS) m.Get(AI_MATKEY_COLOR_DIFFUSE, c);
+  if (is_specular_glossy(m) || m.Get(AI_MATKEY_BASE_COLOR, c) != aiReturn_SUCCESS) m.Get(AI_MATKEY_COLOR_DIFFUSE, c);
   std::array<float, 3> color{c.r, c.g, c.b};
   for (float& v : color) v = std::isfinite(v) ? std::clamp(v, 0.f, 1.f) : 0.5f;
   return color;
@@ -84,7 +84,9 @@ std::array<float, 3> base_color(const aiMaterial& m) {
 float opacity_of(const aiMaterial& m, bool is_gltf) {
   aiColor4D c;
   float opacity = number(m, AI_MATKEY_OPACITY, 1);
-  if (is_gltf && m.Get(AI_MATKEY_BASE_COLOR, c) == aiReturn_SUCCESS && std::isfinite(c.a)) opacity = c.a;
+  const bool is_glossy = is_specular_glossy(m);
+  const aiReturn found = is_glossy ? m.Get(AI_MATKEY_COLOR_DIFFUSE, c) : m.Get(AI_MATKEY_BASE_COLOR, c);
+  if (is_gltf && found == aiReturn_SUCCESS && std::isfinite(c.a)) opacity = c.a;
   return std::clamp(opacity, 0.f, 1.f);
 }
 
@@ -94,30 +96,6 @@ ImportedMaterial::Alpha alpha_of(const aiMaterial& m) {
   aiString mode;
   if (m.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS) return blend;
   return std::strcmp(mode.C_Str(), "MASK") == 0 ? mask : std::strcmp(mode.C_Str(), "BLEND") == 0 ? blend : opaque;
-}
-
-/// Returns the names of properties that have no counterpart.
-std::vector<std::string> left_out(const aiMaterial& m, bool is_gltf, bool has_roughness_image) {
-  std::vector<std::string> names;
-  const auto name_if = [&names](bool condition, const char* name) {
-    if (condition) names.emplace_back(name);
-  };
-  const auto has_texture = [&m](std::initializer_list<aiTextureType> types) {
-    return std::ranges::any_of(types, [&m](aiTextureType type) { return m.GetTextureCount(type) > 0; });
-  };
-  name_if(has_color(m, AI_MATKEY_COLOR_EMISSIVE) || has_texture({aiTextureType_EMISSIVE}), "emission");
-  name_if(has_texture({aiTextureType_HEIGHT, aiTextureType_DISPLACEMENT}), "height map");
-  name_if(has_texture({aiTextureType_LIGHTMAP, aiTextureType_AMBIENT_OCCLUSION}), "occlusion map");
-  name_if(has_roughness_image, "roughness and metalness map");
-  name_if(is_gltf && !has_roughness_image && number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1) < 1 &&
-              number(m, AI_MATKEY_METALLIC_FACTOR, 1) < 0.5f,
-          "gloss");
-  name_if(!is_gltf && has_color(m, AI_MATKEY_COLOR_SPECULAR) && number(m, AI_MATKEY_SHININESS, 0) > 0, "gloss");
-  name_if(has_texture({aiTextureType_SPECULAR, aiTextureType_SHININESS}), "specular map");
-  name_if(number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0) > 0, "transmission");
-  name_if(number(m, AI_MATKEY_CLEARCOAT_FACTOR, 0) > 0, "clear coat");
-  name_if(has_texture({aiTextureType_SHEEN}), "sheen");
-  return names;
 }
 
 }  // namespace
@@ -137,19 +115,19 @@ ImportedMaterial converted(const aiMaterial& material, const aiScene& scene, std
   m.opacity = opacity_of(material, is_gltf);
   m.alpha = alpha_of(material);
   m.cutoff = number(material, AI_MATKEY_GLTF_ALPHACUTOFF, 0.5f);
-  const bool has_base = material.GetTextureCount(aiTextureType_BASE_COLOR) > 0;
+  const bool is_glossy = is_specular_glossy(material);
+  const bool has_base = !is_glossy && material.GetTextureCount(aiTextureType_BASE_COLOR) > 0;
   m.color_texture = texture(material, has_base ? aiTextureType_BASE_COLOR : aiTextureType_DIFFUSE, scene, images);
   m.opacity_texture = texture(material, aiTextureType_OPACITY, scene, images);
   // The image of an OBJ replaces its colour, which exporters set to any value beside an image, black too.
   if (!is_gltf && m.color_texture.image >= 0) m.color = {1, 1, 1};
   m.normal_texture = texture(material, aiTextureType_NORMALS, scene, images);
-  if (is_gltf && !has_roughness_image) {
+  if (is_gltf && !is_glossy && !has_roughness_image) {
     m.roughness = std::clamp(number(material, AI_MATKEY_ROUGHNESS_FACTOR, 1), 0.f, 1.f);
     // Both factors are 1 where a file does not state them, which is no statement about metal.
     const float metalness = number(material, AI_MATKEY_METALLIC_FACTOR, 1);
     m.metalness = metalness == 1 && m.roughness == 1 ? 0 : metalness;
   }
-  m.left_out = left_out(material, is_gltf, has_roughness_image);
   return m;
 }
 

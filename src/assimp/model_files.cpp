@@ -8,9 +8,12 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <string_view>
+#include <stdexcept>
 
+#include "imports/gltf_check.h"
+#include "imports/obj_lines.h"
 #include "imports/obj_origin.h"
+#include "imports/uri.h"
 
 namespace frond {
 namespace {
@@ -104,14 +107,47 @@ void ProcessLimits::apply() const {
 }
 
 ModelFiles::ModelFiles(const fs::path& model, ProcessLimits& limits)
-    : folder_(fs::canonical(model).parent_path()), limits_(limits) {}
+    : folder_(fs::canonical(model).parent_path()),
+      model_(fs::canonical(model)),
+      is_obj_(lower_case(model.extension().string()) == ".obj"),
+      limits_(limits) {}
+
+std::string ModelFiles::content(const fs::path& path) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) throw std::runtime_error("\"" + path.filename().string() + "\" cannot be opened");
+  limits_.allow_file(fs::file_size(path));
+  std::string bytes(fs::file_size(path), '\0');
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  return bytes;
+}
+
+const std::string& ModelFiles::obj_text(const fs::path& path) {
+  const auto [entry, is_new] = texts_.try_emplace(path);
+  std::string problem;
+  const auto is_usable = [&](const std::string& name) { return !permitted(name.c_str(), &problem).empty(); };
+  if (is_new && path == model_) {
+    entry->second = obj_.model(content(path), is_usable);
+    origin_ = move_obj_to_origin(entry->second);
+  } else if (is_new) {
+    entry->second = obj_.materials(content(path));
+  }
+  return entry->second;
+}
+
+void ModelFiles::check() {
+  if (is_obj_)
+    obj_text(model_);
+  else
+    gltf_losses_ = check_gltf(content(model_));
+}
 
 /// The path is relative to the model's folder, or begins with it. Windows' separators are accepted.
 fs::path ModelFiles::permitted(const char* name, std::string* problem) const {
   std::string text = name;
   std::ranges::replace(text, '\\', '/');
   std::error_code error;
-  const fs::path path = fs::canonical(folder_ / text, error);
+  fs::path path = fs::canonical(folder_ / text, error);
+  if (error && !is_obj_) path = fs::canonical(folder_ / percent_decoded(text), error);
   if (error) {
     *problem = "there is no such file";
     return {};
@@ -151,6 +187,9 @@ void ModelFiles::refuse(const char* name, const std::string& problem) {
 Assimp::IOStream* ModelFiles::Open(const char* name, const char* mode) {
   std::string problem;
   const fs::path path = permitted(name, &problem);
+  // The library's own idea, where a material file is missing, which has its message.
+  const bool is_fallback = is_obj_ && name == fs::path(model_.filename()).replace_extension(".mtl");
+  if (!problem.empty() && is_fallback && !refusals_.empty()) return nullptr;
   FILE* file = nullptr;
   if (problem.empty() && *mode != 'r') problem = "files are not written";
   if (problem.empty() && !(file = std::fopen(path.c_str(), "rb"))) problem = "it cannot be opened";
@@ -158,16 +197,13 @@ Assimp::IOStream* ModelFiles::Open(const char* name, const char* mode) {
     refuse(name, problem);
     return nullptr;
   }
+  if (is_obj_) {
+    std::fclose(file);
+    return new TextStream(obj_text(path));
+  }
   const uint64_t size = fs::file_size(path);
   limits_.allow_file(size);
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  if (extension != ".obj") return new ReadStream(file, size);
-  obj_.resize(size);
-  obj_.resize(std::fread(obj_.data(), 1, size, file));
-  std::fclose(file);
-  if (const auto moved = move_obj_to_origin(obj_); moved != std::array<double, 3>{}) origin_ = moved;
-  return new TextStream(obj_);
+  return new ReadStream(file, size);
 }
 
 void ModelFiles::Close(Assimp::IOStream* stream) { delete stream; }

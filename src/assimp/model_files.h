@@ -3,8 +3,11 @@
 #include <array>
 #include <assimp/IOSystem.hpp>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "imports/obj_text.h"
 
 namespace frond {
 
@@ -22,7 +25,7 @@ class ProcessLimits {
 };
 
 /// The files that the library may open: regular files in the model's folder and below it, through symbolic links too.
-/// Files cannot be written.
+/// Files cannot be written. Of OBJ and MTL files the library sees those statements only that the import reads.
 class ModelFiles final : public Assimp::IOSystem {
  public:
   ModelFiles(const std::filesystem::path& model, ProcessLimits& limits);
@@ -32,6 +35,11 @@ class ModelFiles final : public Assimp::IOSystem {
   Assimp::IOStream* Open(const char* name, const char* mode) override;
   void Close(Assimp::IOStream* stream) override;
 
+  /// Compares the model with what the import reads, before the library reads it. Throws std::runtime_error for what it
+  /// would misread.
+  void check();
+  /// What changes the look and is not read, when the library has read the files.
+  std::vector<ImportedLoss> losses() const { return is_obj_ ? obj_.losses() : gltf_losses_; }
   /// Messages about files that were asked for and not opened.
   const std::vector<std::string>& refusals() const { return refusals_; }
   /// What was subtracted from the vertices of an OBJ file: move_obj_to_origin.
@@ -41,11 +49,18 @@ class ModelFiles final : public Assimp::IOSystem {
   /// Returns the file's path, or an empty one if it must not be read.
   std::filesystem::path permitted(const char* name, std::string* problem) const;
   void refuse(const char* name, const std::string& problem);
+  /// Returns the content of a file, whose name was permitted.
+  std::string content(const std::filesystem::path& path);
+  /// Returns a file's text for the library, made once.
+  const std::string& obj_text(const std::filesystem::path& path);
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, model_;
+  bool is_obj_;
   ProcessLimits& limits_;
+  ObjText obj_;
+  std::map<std::filesystem::path, std::string> texts_;
+  std::vector<ImportedLoss> gltf_losses_;
   std::vector<std::string> refusals_;
-  std::string obj_;  ///< text of the OBJ file, with moved vertices
   std::array<double, 3> origin_{};
 };
 

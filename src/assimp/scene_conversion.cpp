@@ -11,11 +11,6 @@
 namespace frond {
 namespace {
 
-/// Returns "1 camera", "2 cameras".
-std::string counted(size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 /// Whether no component is infinite or not a number.
 bool is_finite(const aiVector3D& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -60,28 +55,6 @@ void add_nodes(const aiNode& node, int32_t parent, int depth, const std::vector<
   for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], index, depth + 1, mesh_of, nodes);
 }
 
-/// Returns the names of parts that have no counterpart.
-std::vector<std::string> left_out(const aiScene& scene) {
-  std::vector<std::string> names;
-  const auto add = [&names](size_t count, const std::string& what) {
-    if (count > 0) names.push_back(counted(count, what));
-  };
-  size_t bones = 0, morphs = 0, colors = 0;
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[i];
-    bones += mesh.mNumBones;
-    morphs += mesh.mNumAnimMeshes;
-    colors += mesh.HasVertexColors(0);
-  }
-  add(scene.mNumAnimations, "animation");
-  add(bones, "bone");
-  add(morphs, "morph target");
-  if (colors > 0) names.push_back("vertex colours of " + counted(colors, "mesh part"));
-  add(scene.mNumCameras, "camera");
-  add(scene.mNumLights, "light");
-  return names;
-}
-
 }  // namespace
 
 /// Points and lines are left out, and nodes keep their order: a parent precedes its children.
@@ -99,7 +72,6 @@ ImportedScene converted(const aiScene& scene) {
   }
   if (result.meshes.empty() || !scene.mRootNode) throw std::runtime_error("it has no triangles");
   add_nodes(*scene.mRootNode, -1, 0, mesh_of, result.nodes);
-  result.left_out = left_out(scene);
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "imports/imported_loss.h"
+
 namespace frond {
 
 /// Scene of a model file (OBJ, glTF) as plain data, independent of the library that reads the file.
@@ -38,7 +40,6 @@ struct ImportedMaterial {
   float cutoff = 0.5f;         ///< Alpha::mask: opacity below it counts as 0, otherwise as 1
   ImportedTexture color_texture = {}, opacity_texture = {}, normal_texture = {};
   float metalness = 0, roughness = 1;
-  std::vector<std::string> left_out = {};  ///< properties that have no counterpart: "emission", ...
 
   /// The texture whose coordinates meshes have; they are already mapped by its `to_image`.
   const ImportedTexture& uv_texture() const {
@@ -72,7 +73,7 @@ struct ImportedScene {
   std::vector<ImportedMesh> meshes;
   std::vector<ImportedNode> nodes;
   std::array<double, 3> origin{};  ///< point of the model that all positions are relative to: move_obj_to_origin
-  std::vector<std::string> left_out;  ///< parts of the scene that have no counterpart: "2 animations", ...
+  std::vector<ImportedLoss> losses;
   std::vector<std::string> warnings;
   bool operator==(const ImportedScene&) const = default;
 };

@@ -87,7 +87,7 @@ std::string problem_of(const ChildResult& child) {
 ImportedScene read_model(const fs::path& path) {
   check_name(path);
   const fs::path program = reader_program();
-  const auto child = run_child({program.string(), fs::absolute(path).string()}, "");
+  const auto child = run_dependent({program.string(), fs::absolute(path).string()});
   if (!child) fail({}, "cannot run \"{}\"", program.string());
   if (WIFSIGNALED(child->status) && WTERMSIG(child->status) == SIGINT) fail({}, "the import was interrupted");
   if (child->status != 0) fail({}, "cannot read \"{}\": {}", path.string(), problem_of(*child));
@@ -96,6 +96,10 @@ ImportedScene read_model(const fs::path& path) {
     for (ImportedMaterial& material : scene.materials) make_printable(material.name);
     for (ImportedMesh& mesh : scene.meshes) make_printable(mesh.name);
     for (std::string& warning : scene.warnings) make_printable(warning);
+    for (ImportedLoss& loss : scene.losses) {
+      make_printable(loss.what);
+      for (std::string& name : loss.materials) make_printable(name);
+    }
     return scene;
   } catch (const std::runtime_error& error) {
     fail({}, "cannot read \"{}\": {}", path.string(), error.what());

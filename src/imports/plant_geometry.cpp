@@ -31,13 +31,6 @@ void append(PlantMesh& to, const ImportedMesh& mesh, const NodeMap& map) {
   }
 }
 
-/// Normals of vertices whose face has no area may be 0, which has no direction: the mesh is then written without.
-bool has_normals(const ImportedMesh& mesh) {
-  return !mesh.normals.empty() && std::ranges::none_of(mesh.normals, [](const auto& n) {
-    return !(std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]) > 0) || !std::isfinite(n[0] + n[1] + n[2]);
-  });
-}
-
 /// Whether there is no inverse in single precision.
 bool is_flat(const NodeMap& map) {
   const double size = length(map.vector({1, 0, 0})) * length(map.vector({0, 1, 0})) * length(map.vector({0, 0, 1}));
@@ -87,6 +80,13 @@ PlantObject object_of(const ImportedScene& scene, const std::vector<uint32_t>& m
 }
 
 }  // namespace
+
+/// Normals of vertices whose face has no area may be 0, which has no direction: the mesh is then written without.
+bool has_normals(const ImportedMesh& mesh) {
+  return !mesh.normals.empty() && std::ranges::none_of(mesh.normals, [](const auto& n) {
+    return !(std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]) > 0) || !std::isfinite(n[0] + n[1] + n[2]);
+  });
+}
 
 AffineMap affine_map(const NodeMap& map) {
   AffineMap result;

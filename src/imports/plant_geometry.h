@@ -25,6 +25,9 @@ struct NodeMap {
   NodeMap after(const NodeMap& first) const;
 };
 
+/// Whether all normals of a mesh have a direction.
+bool has_normals(const ImportedMesh& mesh);
+
 /// Returns the map in single precision.
 AffineMap affine_map(const NodeMap& map);
 

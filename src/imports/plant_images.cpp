@@ -8,6 +8,8 @@
 #include "core/error.h"
 #include "image/image_codec.h"
 #include "image/image_signature.h"
+#include "imports/obj_lines.h"
+#include "imports/uri.h"
 #include "system/file_bytes.h"
 
 namespace frond {
@@ -40,18 +42,21 @@ std::string plain_name(std::string_view name) {
   return out.empty() ? "unnamed" : out;
 }
 
-/// Exporters write absolute paths of their own machine, and Windows' separators. A file that is not at the path is
-/// searched for by its name in the model's folder and in its subfolder textures.
+/// Exporters write absolute paths of their own machine, and Windows' separators; names in glTF are percent-encoded,
+/// unless an exporter has forgotten it. A file that is not at the path is searched for by its name in the model's
+/// folder and in its subfolder textures.
 fs::path PlantImages::found(const std::string& name) const {
   const fs::path folder = fs::canonical(model_).parent_path();
-  std::string text = name;
-  std::ranges::replace(text, '\\', '/');
-  const fs::path path = text;
-  for (const fs::path& candidate : {folder / path, folder / path.filename(), folder / "textures" / path.filename()}) {
-    std::error_code error;
-    const fs::path file = fs::canonical(candidate, error);
-    if (error || !fs::is_regular_file(file, error)) continue;
-    if (std::ranges::mismatch(folder, file).in1 == folder.end()) return file;
+  const bool is_obj = lower_case(model_.extension().string()) == ".obj";
+  for (std::string text : {name, is_obj ? name : percent_decoded(name)}) {
+    std::ranges::replace(text, '\\', '/');
+    const fs::path path = text;
+    for (const fs::path& candidate : {folder / path, folder / path.filename(), folder / "textures" / path.filename()}) {
+      std::error_code error;
+      const fs::path file = fs::canonical(candidate, error);
+      if (error || !fs::is_regular_file(file, error)) continue;
+      if (std::ranges::mismatch(folder, file).in1 == folder.end()) return file;
+    }
   }
   fail({}, "there is no such file in the model's folder or below");
 }

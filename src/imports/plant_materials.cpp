@@ -48,9 +48,6 @@ class MaterialWriter {
     out.types.push_back(type);
     out.text += textures_ + fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"{}\n", name, type, text_);
     textures_.clear();
-    const bool is_metal = m.metalness >= 0.5f;
-    for (const std::string& what : m.left_out)
-      if (!(is_metal && what == "gloss")) out.left_out[what].push_back(m.name);
     add_normal_map(m, out);
   }
   /// Throws InputError for a rule that no material has used.
@@ -145,7 +142,7 @@ class MaterialWriter {
   void add_normal_map(const ImportedMaterial& m, PlantMaterials& out) {
     if (!images_.pixels(m.normal_texture.image)) return;
     if (!m.normal_texture.shares_uv(m.uv_texture())) {
-      out.left_out["normal map with texture coordinates of its own"].push_back(m.name);
+      out.losses.add_of(m.name, "normal map with texture coordinates of its own", true);
       return;
     }
     out.text.insert(out.text.size() - 1,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,7 @@ struct PlantMaterials {
   std::vector<std::string> names;  ///< by index: names in the scene file; of the model, for materials without triangles
   std::vector<std::string> types;  ///< by index: plug-ins
   std::vector<std::string> alpha;  ///< by index: parameter of shapes for the opacity, or ""
-  std::map<std::string, std::vector<std::string>> left_out;  ///< property without a counterpart, and its materials
+  LossList losses;
 };
 
 /// Returns whether a name matches a pattern of the shell, in upper or lower case.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 
 #include "core/error.h"
+#include "imports/geometry_losses.h"
 #include "imports/model_reader.h"
 #include "imports/output_folder.h"
 #include "scene/geometry/instance_writer.h"
@@ -192,10 +192,12 @@ std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<boo
     return {};
   }
   const double tolerance = kSheetDistance * length(geometry.most - geometry.least);
-  std::vector<DoubleSheet> all = double_sheets(geometry.meshes, tolerance, remove);
-  for (PlantObject& object : geometry.objects) {
-    const double stretch = std::cbrt(std::abs(object.instances.front().determinant()));
-    for (DoubleSheet sheet : double_sheets(object.meshes, tolerance / stretch, remove)) {
+  std::vector<DoubleSheet> all;
+  const auto search = [&](std::vector<PlantMesh>& meshes, double stretch) {
+    const auto found = double_sheets(meshes, tolerance / stretch, remove);
+    if (!found)
+      log.info("double leaf sheets are not searched where too many triangles lie at one place, as they do here");
+    for (DoubleSheet sheet : found.value_or(std::vector<DoubleSheet>())) {
       sheet.apart *= stretch;
       const auto same = std::ranges::find(all, sheet.material, &DoubleSheet::material);
       if (same == all.end()) {
@@ -205,7 +207,10 @@ std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<boo
         same->apart = std::max(same->apart, sheet.apart);
       }
     }
-  }
+  };
+  search(geometry.meshes, 1);
+  for (PlantObject& object : geometry.objects)
+    search(object.meshes, std::cbrt(std::abs(object.instances.front().determinant())));
   return all;
 }
 
@@ -228,9 +233,26 @@ std::string stem_of(const fs::path& scene) {
   return is_quotable ? stem : plain_name(stem);
 }
 
+/// Returns the text of the losses. A material by --leaf replaces the surface of the model's.
+std::vector<std::string> left_out(const ImportedScene& scene, const PlantMaterials& materials,
+                                  const std::vector<MaterialRule>& rules) {
+  std::vector<std::string> texts;
+  const auto is_replaced = [&rules](const std::string& name) {
+    return std::ranges::any_of(rules, [&name](const MaterialRule& rule) { return matches(rule.pattern, name); });
+  };
+  const auto add = [&](ImportedLoss loss) {
+    const bool is_of_material = !loss.materials.empty();
+    if (loss.is_surface) std::erase_if(loss.materials, is_replaced);
+    if (is_of_material == !loss.materials.empty()) texts.push_back(text_of(loss));
+  };
+  for (const ImportedLoss& loss : scene.losses) add(loss);
+  for (const ImportedLoss& loss : materials.losses.all()) add(loss);
+  return texts;
+}
+
 /// Returns the summary of what is to be written.
-ImportSummary summary_of(const ImportedScene& scene, const PlantGeometry& geometry, const PlantMaterials& materials,
-                         const std::vector<DoubleSheet>& sheets) {
+ImportSummary summary_of(const ImportOptions& options, const ImportedScene& scene, const PlantGeometry& geometry,
+                         const PlantMaterials& materials, const std::vector<DoubleSheet>& sheets) {
   const Vec3d size = geometry.most - geometry.least;
   ImportSummary summary{.materials = materials.names,
                         .triangles = std::vector<size_t>(scene.materials.size()),
@@ -238,14 +260,8 @@ ImportSummary summary_of(const ImportedScene& scene, const PlantGeometry& geomet
                         .instances = geometry.instance_count(),
                         .objects = geometry.objects.size(),
                         .double_sheets = sheets,
-                        .left_out = scene.left_out,
+                        .left_out = left_out(scene, materials, options.rules),
                         .size = {size.x, size.y, size.z}};
-  constexpr size_t kMostNames = 5;
-  for (const auto& [what, names] : materials.left_out) {
-    const std::span listed = std::span(names).first(std::min(names.size(), kMostNames));
-    summary.left_out.push_back(fmt::format("{} of \"{}\"", what, fmt::join(listed, "\", \"")));
-    if (names.size() > kMostNames) summary.left_out.back() += fmt::format(" and {} more", names.size() - kMostNames);
-  }
   const auto count = [&summary](const std::vector<PlantMesh>& meshes) {
     for (const PlantMesh& mesh : meshes) summary.triangles[mesh.material] += mesh.triangles.size();
   };
@@ -260,7 +276,8 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
                            const std::function<void(const ImportSummary&)>& accept) {
   if (options.scene.extension() != ".pbrt")
     fail({}, "the scene \"{}\" needs the extension .pbrt", options.scene.string());
-  const ImportedScene scene = read_model(options.model);
+  ImportedScene scene = read_model(options.model);
+  add_geometry_losses(scene);
   for (const std::string& warning : scene.warnings) log.warn({}, warning);
   PlantGeometry geometry = plant_geometry(scene, to_scene(options));
   warn_of_steps(geometry, log);
@@ -270,7 +287,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   const std::string stem = stem_of(options.scene);
   PlantImages images(scene.images, options.model, stem + "-files", log);
   const PlantMaterials materials = plant_materials(scene, used_materials(scene, geometry), options.rules, images, log);
-  const ImportSummary summary = summary_of(scene, geometry, materials, sheets);
+  const ImportSummary summary = summary_of(options, scene, geometry, materials, sheets);
   accept(summary);
 
   std::vector<fs::path> inputs = images.inputs();

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kMagic = "frond import 1\n";
+constexpr std::string_view kMagic = "frond import 2\n";
 
 template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires {
@@ -90,14 +90,16 @@ void visit(T& v, Io& io) {
     each(v.image, v.uv_set, v.to_image, v.wrap);
   } else if constexpr (std::is_same_v<Type, ImportedMaterial>) {
     each(v.name, v.color, v.opacity, v.alpha, v.cutoff, v.color_texture, v.opacity_texture, v.normal_texture,
-         v.metalness, v.roughness, v.left_out);
+         v.metalness, v.roughness);
+  } else if constexpr (std::is_same_v<Type, ImportedLoss>) {
+    each(v.what, v.count, v.materials, v.is_surface);
   } else if constexpr (std::is_same_v<Type, ImportedMesh>) {
     each(v.name, v.material, v.positions, v.normals, v.uvs, v.triangles);
   } else if constexpr (std::is_same_v<Type, ImportedNode>) {
     each(v.name, v.parent, v.to_parent, v.meshes);
   } else {
     static_assert(std::is_same_v<Type, ImportedScene>);
-    each(v.images, v.materials, v.meshes, v.nodes, v.origin, v.left_out, v.warnings);
+    each(v.images, v.materials, v.meshes, v.nodes, v.origin, v.losses, v.warnings);
   }
 }
 

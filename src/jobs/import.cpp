@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "imports/scene_import.h"
 #include "jobs/record/common_params.h"
 #include "render/material_words.h"
@@ -96,6 +97,7 @@ void report_double_sheets(const JobRun& run, const ImportOptions& options, const
 
 /// The job: reads the model, writes the scene, and reports what has no counterpart.
 Result import_model(const JobRun& run) {
+  const StopScope stop(run.control.stop);
   ImportOptions options{.model = run.args.text("model"), .scene = run.args.text("output"), .rules = rules_of(run)};
   options.scale = scale_of(run);
   options.z_is_up = run.args.text("up") == "z";
@@ -103,7 +105,7 @@ Result import_model(const JobRun& run) {
   const auto accept = [&](const ImportSummary& found) {
     report_assumptions(run, options, found);
     report_double_sheets(run, options, found);
-    if (!found.left_out.empty()) run.log().info(fmt::format("left out: {}", fmt::join(found.left_out, ", ")));
+    if (!found.left_out.empty()) run.log().warn({}, fmt::format("left out: {}", fmt::join(found.left_out, ", ")));
     run.context.log().check();
     run.check_stop();
   };

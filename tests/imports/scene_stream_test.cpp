@@ -17,7 +17,7 @@ namespace {
 ImportedScene a_scene() {
   ImportedScene scene;
   scene.images = {{"leaf.png", {1, 2, 3}, "png"}};
-  scene.materials = {{.name = "leaf", .left_out = {"gloss"}}};
+  scene.materials = {{.name = "leaf"}};
   scene.materials[0].color_texture = {.image = 0, .uv_set = 1};
   scene.meshes = {{.name = "m",
                    .material = 0,
@@ -27,7 +27,7 @@ ImportedScene a_scene() {
                    .triangles = {{0, 1, 2}}}};
   scene.nodes = {{.name = "root", .parent = -1, .to_parent = {2, 0, 0, 10, 0, 2, 0, 20, 0, 0, 2, 30}},
                  {.name = "child", .parent = 0, .to_parent = {0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3}, .meshes = {0}}};
-  scene.left_out = {"1 camera"};
+  scene.losses = {{"camera", 2}, {"gloss", 1, {"leaf"}, true}};
   scene.warnings = {"a warning"};
   return scene;
 }
