@@ -112,10 +112,14 @@ ModelFiles::ModelFiles(const fs::path& model, ProcessLimits& limits)
       is_obj_(lower_case(model.extension().string()) == ".obj"),
       limits_(limits) {}
 
+void ModelFiles::allow(const fs::path& path) {
+  if (allowed_.insert(path).second) limits_.allow_file(fs::file_size(path));
+}
+
 std::string ModelFiles::content(const fs::path& path) {
   const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) throw std::runtime_error("\"" + path.filename().string() + "\" cannot be opened");
-  limits_.allow_file(fs::file_size(path));
+  allow(path);
   std::string bytes(fs::file_size(path), '\0');
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
   return bytes;
@@ -201,9 +205,8 @@ Assimp::IOStream* ModelFiles::Open(const char* name, const char* mode) {
     std::fclose(file);
     return new TextStream(obj_text(path));
   }
-  const uint64_t size = fs::file_size(path);
-  limits_.allow_file(size);
-  return new ReadStream(file, size);
+  allow(path);
+  return new ReadStream(file, fs::file_size(path));
 }
 
 void ModelFiles::Close(Assimp::IOStream* stream) { delete stream; }

@@ -4,6 +4,7 @@
 #include <assimp/IOSystem.hpp>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace frond {
 
-/// Limits of this process, which reads files of strangers. Each file that is opened raises those of memory and time in
+/// Limits of this process, which reads files of strangers. Each file that is read raises those of memory and time in
 /// proportion to its size. Memory: 1 GB and 128 times the files, at most the machine's; processor time: 60 s and 2 s
 /// for each MB; each file that is read: 4 GB; output: 4 times the memory. No file can be written.
 class ProcessLimits {
@@ -49,6 +50,8 @@ class ModelFiles final : public Assimp::IOSystem {
   /// Returns the file's path, or an empty one if it must not be read.
   std::filesystem::path permitted(const char* name, std::string* problem) const;
   void refuse(const char* name, const std::string& problem);
+  /// Raises the limits by a file, once.
+  void allow(const std::filesystem::path& path);
   /// Returns the content of a file, whose name was permitted.
   std::string content(const std::filesystem::path& path);
   /// Returns a file's text for the library, made once.
@@ -58,6 +61,7 @@ class ModelFiles final : public Assimp::IOSystem {
   bool is_obj_;
   ProcessLimits& limits_;
   ObjText obj_;
+  std::set<std::filesystem::path> allowed_;
   std::map<std::filesystem::path, std::string> texts_;
   std::vector<ImportedLoss> gltf_losses_;
   std::vector<std::string> refusals_;

@@ -1,5 +1,6 @@
 #include "imports/gltf_json.h"
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>

@@ -6,7 +6,7 @@ namespace frond {
 namespace {
 
 /// A hostile file may have any number of unknown properties.
-constexpr size_t kMostKinds = 200, kMostMaterials = 1000;
+constexpr size_t kMostKinds = 200;
 
 }  // namespace
 
@@ -30,9 +30,7 @@ void LossList::add_of(const std::string& material, const std::string& what, bool
   if (!known && all_.size() >= kMostKinds) return add("further properties");
   if (!known) known = &all_.emplace_back(ImportedLoss{what, 0, {}, !is_shape});
   ++known->count;
-  if (known->materials.size() < kMostMaterials &&
-      std::ranges::find(known->materials, material) == known->materials.end())
-    known->materials.push_back(material);
+  if (known->materials.empty() || known->materials.back() != material) known->materials.push_back(material);
 }
 
 std::string text_of(const ImportedLoss& loss) {

@@ -85,7 +85,8 @@ constexpr MapOption kOptions[] = {
 /// Reads the statements one by one.
 class MtlReader {
  public:
-  MtlReader(LossList& losses, std::set<std::string>& defined) : losses_(losses), defined_(defined) {}
+  MtlReader(const std::set<std::string>& used, LossList& losses, std::set<std::string>& defined)
+      : used_(used), losses_(losses), defined_(defined) {}
 
   std::string read(std::string_view text) {
     ObjLines lines(text, false);
@@ -110,7 +111,7 @@ class MtlReader {
   void statement(const ObjStatement& s, const std::string& keyword) {
     const auto* known = std::ranges::find(kStatements, keyword, &MtlStatement::keyword);
     if (known == std::end(kStatements))
-      return losses_.add_of(name_, "unknown statement \"" + std::string(s.keyword.substr(0, 40)) + "\"");
+      return lose("unknown statement \"" + std::string(s.keyword.substr(0, 40)) + "\"");
     const std::string says(known->says);
     switch (known->use) {
       case Use::color:
@@ -123,16 +124,21 @@ class MtlReader {
       case Use::inert:
         return;
       case Use::unless_0:
-        if (!are_all(0)) losses_.add_of(name_, says);
+        if (!are_all(0)) lose(says);
         return;
       case Use::unless_1:
-        if (!are_all(1)) losses_.add_of(name_, says);
+        if (!are_all(1)) lose(says);
         return;
       case Use::model:
         return model();
       case Use::lost:
-        return losses_.add_of(name_, says);
+        return lose(says);
     }
+  }
+
+  /// `is_shape`: it is lost with any material in place of this one.
+  void lose(const std::string& what, bool is_shape = false) {
+    if (used_.contains(name_)) losses_.add_of(name_, what, is_shape);
   }
 
   bool are_all(double value) const {
@@ -143,8 +149,7 @@ class MtlReader {
   void model() {
     const std::optional<double> value = words_.empty() ? std::nullopt : number_of(words_[0]);
     if (!value || *value > 2 || *value < 0)
-      losses_.add_of(
-          name_, "reflection or refraction (illum " + std::string(words_.empty() ? "" : words_[0].substr(0, 10)) + ")");
+      lose("reflection or refraction (illum " + std::string(words_.empty() ? "" : words_[0].substr(0, 10)) + ")");
   }
 
   /// One number is a grey.
@@ -153,8 +158,8 @@ class MtlReader {
     for (const std::string_view word : words_)
       if (number_of(word)) numbers.emplace_back(word);
     if (numbers.size() != words_.size() || numbers.empty() || numbers.size() > 3)
-      return losses_.add_of(name_, "colour that is not red, green and blue (Kd " +
-                                       std::string(words_.empty() ? "" : words_[0].substr(0, 20)) + ")");
+      return lose("colour that is not red, green and blue (Kd " +
+                  std::string(words_.empty() ? "" : words_[0].substr(0, 20)) + ")");
     numbers.resize(3, numbers[0]);
     out_ += "Kd " + numbers[0] + " " + numbers[1] + " " + numbers[2] + "\n";
   }
@@ -162,14 +167,13 @@ class MtlReader {
   void opacity(bool is_clarity) {
     const bool is_halo = !words_.empty() && words_[0] == "-halo";
     if (is_halo) {
-      losses_.add_of(name_, "opacity by direction (d -halo)", true);
+      lose("opacity by direction (d -halo)", true);
       words_.erase(words_.begin());
     }
     const std::optional<double> value = words_.empty() ? std::nullopt : number_of(words_[0]);
-    if (!value || !std::isfinite(*value)) return losses_.add_of(name_, "opacity that is no number", true);
+    if (!value || !std::isfinite(*value)) return lose("opacity that is no number", true);
     const double opacity = is_clarity ? 1 - *value : *value;
-    if (opacity_ && std::abs(*opacity_ - opacity) > 1e-3)
-      losses_.add_of(name_, "the first of two opacities (d, Tr) that differ", true);
+    if (opacity_ && std::abs(*opacity_ - opacity) > 1e-3) lose("the first of two opacities (d, Tr) that differ", true);
     opacity_ = opacity;
     out_ += (is_clarity ? "Tr " : "d ") + std::string(words_[0]) + "\n";
   }
@@ -193,9 +197,9 @@ class MtlReader {
         is_clamped = value == "on";
       else if (!has_no_effect(*option, value, words) &&
                !(option->name == "-imfchan" && value == "m" && keyword == "map_d"))
-        losses_.add_of(name_, keyword_text(s) + " " + std::string(option->name), true);
+        lose(keyword_text(s) + " " + std::string(option->name), true);
     }
-    if (rest.empty()) return losses_.add_of(name_, keyword_text(s) + " without a file", true);
+    if (rest.empty()) return lose(keyword_text(s) + " without a file", true);
     out_ += keyword + (is_clamped ? " -clamp on " : " ") + std::string(rest) + "\n";
   }
 
@@ -214,6 +218,7 @@ class MtlReader {
     return true;
   }
 
+  const std::set<std::string>& used_;
   LossList& losses_;
   std::set<std::string>& defined_;
   std::string name_, out_;
@@ -223,8 +228,9 @@ class MtlReader {
 
 }  // namespace
 
-std::string read_statements(std::string_view text, LossList& losses, std::set<std::string>& defined) {
-  return MtlReader(losses, defined).read(text);
+std::string read_statements(std::string_view text, const std::set<std::string>& used, LossList& losses,
+                            std::set<std::string>& defined) {
+  return MtlReader(used, losses, defined).read(text);
 }
 
 }  // namespace frond

@@ -9,7 +9,9 @@
 namespace frond {
 
 /// Returns the statements of a material file (MTL) that the import reads, in the form that the reader library needs.
-/// Adds the others, if they change the look, to `losses`, and the names of the materials to `defined`.
-std::string read_statements(std::string_view text, LossList& losses, std::set<std::string>& defined);
+/// Adds the others, if they change the look of materials that are `used`, to `losses`, and the names of all to
+/// `defined`.
+std::string read_statements(std::string_view text, const std::set<std::string>& used, LossList& losses,
+                            std::set<std::string>& defined);
 
 }  // namespace frond

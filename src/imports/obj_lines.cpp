@@ -41,8 +41,9 @@ std::optional<ObjStatement> ObjLines::next() {
         joined_.append(text.substr(0, text.size() - 1)).append(" ");
         text = trimmed(take_line());
       }
-      joined_.append(text.ends_with('\\') ? text.substr(0, text.size() - 1) : text);
+      joined_.append(text);
       text = trimmed(joined_);
+      while (text.ends_with('\\')) text = trimmed(text.substr(0, text.size() - 1));  // at the end of the file
     }
     if (text.empty() || text.front() == '#') continue;
     const size_t end = std::min(size_t(std::ranges::find_if(text, is_blank) - text.begin()), text.size());

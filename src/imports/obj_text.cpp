@@ -60,10 +60,14 @@ constexpr OtherStatement kOthers[] = {
     {"mg", ""},
     // Hints for a renderer of 1990.
     {"lod", ""},
+    {"usemtl", ""},  // without a name
     {"bevel", ""},
     {"c_interp", ""},
     {"d_interp", ""},
 };
+
+/// The library's name for the material of faces without one.
+const std::string kDefault = "DefaultMaterial";
 
 /// Corner of a face: vertex, texture coordinates, normal; from 1, 0: none.
 using Corner = std::array<uint64_t, 3>;
@@ -86,7 +90,7 @@ class ModelWriter {
         numbers(*s, 3, 3, kNormal);
       else if (s->keyword == "f" || s->keyword == "fo")
         face(*s);
-      else if (s->keyword == "usemtl")
+      else if (s->keyword == "usemtl" && !s->rest.empty())
         material(std::string(s->rest));
       else if (s->keyword == "mtllib")
         library(*s, is_usable);
@@ -202,7 +206,7 @@ class ModelWriter {
       is_smooth_named_ = true;
     }
     // A face without a material has none of the libraries'.
-    if (!has_material_) material("DefaultMaterial");
+    if (!has_material_) material(kDefault);
     if (!material_.empty()) used_.insert(std::exchange(material_, {}));
     out_.append("f");
     for (const Corner& c : corners_) {
@@ -267,23 +271,15 @@ class ModelWriter {
 }  // namespace
 
 std::string ObjText::model(std::string_view text, const std::function<bool(const std::string&)>& is_usable) {
-  model_losses_ = {};
-  used_.clear();
-  return ModelWriter(text, model_losses_, used_).write(is_usable);
+  return ModelWriter(text, losses_, used_).write(is_usable);
 }
 
-std::string ObjText::materials(std::string_view text) { return read_statements(text, material_losses_, defined_); }
+std::string ObjText::materials(std::string_view text) { return read_statements(text, used_, losses_, defined_); }
 
 std::vector<ImportedLoss> ObjText::losses() const {
-  LossList all = model_losses_;
-  for (const ImportedLoss& loss : material_losses_.all()) {
-    if (loss.materials.empty()) all.add(loss.what, loss.count);
-    for (const std::string& name : loss.materials)
-      if (used_.contains(name)) all.add_of(name, loss.what, !loss.is_surface);
-  }
+  LossList all = losses_;
   for (const std::string& name : used_)
-    if (!defined_.contains(name) && name != "DefaultMaterial")
-      all.add_of(name, "colour, which no material file states,");
+    if (!defined_.contains(name) && name != kDefault) all.add_of(name, "colour, which no material file states,");
   return all.all();
 }
 

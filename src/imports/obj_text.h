@@ -17,13 +17,13 @@ class ObjText {
   /// Returns the text of the OBJ file. `is_usable(name)` says whether a material file can be read. Throws
   /// std::runtime_error with the line for vertices and faces that are none.
   std::string model(std::string_view text, const std::function<bool(const std::string&)>& is_usable);
-  /// Returns the text of a material file.
+  /// Returns the text of a material file, after that of the OBJ file.
   std::string materials(std::string_view text);
-  /// Returns the losses, when all files have been read: of materials that the model uses.
+  /// Returns the losses when all files have been read; those of materials that the model uses.
   std::vector<ImportedLoss> losses() const;
 
  private:
-  LossList model_losses_, material_losses_;
+  LossList losses_;
   std::set<std::string> used_, defined_;  ///< names of materials
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "image/image_codec.h"
 #include "image/image_signature.h"
 #include "imports/obj_lines.h"
@@ -117,16 +118,20 @@ std::string PlantImages::original(int32_t image) {
 }
 
 std::string PlantImages::tinted(int32_t image, const std::array<float, 3>& factor, const std::string& name) {
+  std::string& path = tinted_[{image, factor}];
+  if (!path.empty()) return path;
   const ImageFile& source = decoded(image)->file;
   const size_t channels = source.image.channels.size();
   Image out(source.image.width, source.image.height, {"R", "G", "B"});
-  for (int y = 0; y < out.height; ++y)
+  for (int y = 0; y < out.height; ++y) {
+    check_stop();
     for (int x = 0; x < out.width; ++x)
       for (size_t c = 0; c < 3; ++c) {
         const float v = source.image.at(x, y, channels < 3 ? 0 : c);
         out.at(x, y, c) = to_srgb(std::clamp((source.is_encoded ? to_linear(v) : v) * factor[c], 0.f, 1.f));
       }
-  const std::string path = new_path(name, ".png");
+  }
+  path = new_path(name, ".png");
   files_.push_back({path, image_codec().encode(path, out, {})});
   return path;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/messages/log.h"
@@ -31,7 +32,7 @@ class PlantImages {
   const ImageFile* pixels(int32_t image);
   /// Returns the path of the file with the image as it is in the model.
   std::string original(int32_t image);
-  /// Returns the path of a new file: the colours times a factor per channel, 8 bits in sRGB.
+  /// Returns the path of a file with the colours times a factor per channel, 8 bits in sRGB, which is made once.
   std::string tinted(int32_t image, const std::array<float, 3>& factor, const std::string& name);
   /// Returns the path of a new file with one channel, linear.
   std::string grey(int width, int height, std::vector<float> values, const std::string& name);
@@ -57,6 +58,7 @@ class PlantImages {
   std::string subfolder_;
   const Log& log_;
   std::map<int32_t, std::unique_ptr<Decoded>> decoded_;
+  std::map<std::pair<int32_t, std::array<float, 3>>, std::string> tinted_;  ///< paths
   std::vector<PlantFile> files_;
   std::vector<std::filesystem::path> inputs_;
 };

@@ -4,9 +4,12 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace frond {
 namespace {
@@ -122,21 +125,31 @@ class MaterialWriter {
     const auto cut = [&m](float v) { return m.alpha == Alpha::mask ? (v >= m.cutoff ? 1.f : 0.f) : v; };
     const bool is_map = images_.pixels(m.opacity_texture.image) && m.opacity_texture.image != m.color_texture.image;
     const ImportedTexture& use = is_map ? m.opacity_texture : m.color_texture;
-    const ImageFile* file = images_.pixels(use.image);
-    std::vector<float> values;
-    if (file)
-      for (int y = 0; y < file->image.height; ++y)
-        for (int x = 0; x < file->image.width; ++x)
-          values.push_back(cut(m.opacity * opacity_at(file->image, x, y, is_map)));
-    if (std::ranges::any_of(values, [](float v) { return v < 1; }) && values.size() > 1 && cut(m.opacity) > 0) {
-      const std::string path =
-          images_.grey(file->image.width, file->image.height, std::move(values), m.name + "-alpha");
-      add_texture(name + "-alpha", "float", path, use, 1);
+    const float opacity = cut(m.opacity);
+    const auto [path, is_new] =
+        opacities_.try_emplace({use.image, is_map, m.opacity, m.alpha == Alpha::mask ? m.cutoff : -1.f});
+    if (is_new && opacity > 0) path->second = opacity_image(use.image, is_map, m, cut);
+    if (!path->second.empty()) {
+      add_texture(name + "-alpha", "float", path->second, use, 1);
       return fmt::format(" \"texture alpha\" \"{}-alpha\"", name);
     }
-    const float opacity = cut(m.opacity);
     if (opacity <= 0) log_.warn({}, fmt::format("material \"{}\" has opacity 0: it is invisible", m.name));
     return opacity < 1 ? fmt::format(" \"float alpha\" {}", opacity) : std::string();
+  }
+
+  /// Returns the path of the image of an opacity, or an empty one if it is 1 everywhere.
+  template <class Cut>
+  std::string opacity_image(int32_t image, bool is_map, const ImportedMaterial& m, const Cut& cut) {
+    const ImageFile* file = images_.pixels(image);
+    if (!file) return {};
+    std::vector<float> values;
+    for (int y = 0; y < file->image.height; ++y) {
+      check_stop();
+      for (int x = 0; x < file->image.width; ++x)
+        values.push_back(cut(m.opacity * opacity_at(file->image, x, y, is_map)));
+    }
+    if (values.size() <= 1 || std::ranges::none_of(values, [](float v) { return v < 1; })) return {};
+    return images_.grey(file->image.width, file->image.height, std::move(values), m.name + "-alpha");
   }
 
   void add_normal_map(const ImportedMaterial& m, PlantMaterials& out) {
@@ -154,6 +167,7 @@ class MaterialWriter {
   const Log& log_;
   std::string text_, textures_;
   std::set<std::string> names_;
+  std::map<std::tuple<int32_t, bool, float, float>, std::string> opacities_;  ///< image, kind, factor, cutoff; paths
   std::set<const MaterialRule*> used_rules_;
 };
 

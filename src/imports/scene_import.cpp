@@ -9,9 +9,9 @@
 #include "core/error.h"
 #include "imports/geometry_losses.h"
 #include "imports/model_reader.h"
-#include "imports/output_folder.h"
 #include "scene/geometry/instance_writer.h"
 #include "scene/shapes/ply_writer.h"
+#include "system/new_files.h"
 
 namespace frond {
 namespace {
@@ -40,8 +40,7 @@ std::string comment_name(const fs::path& model) {
 /// Writes the directives and files of a model.
 class SceneWriter {
  public:
-  SceneWriter(const ImportOptions& options, const PlantMaterials& materials, const std::string& stem,
-              OutputFolder& folder)
+  SceneWriter(const ImportOptions& options, const PlantMaterials& materials, const std::string& stem, NewFiles& folder)
       : options_(options), materials_(materials), stem_(stem), folder_(folder) {}
 
   std::string plant(const PlantGeometry& geometry) {
@@ -117,7 +116,7 @@ class SceneWriter {
   const ImportOptions& options_;
   const PlantMaterials& materials_;
   const std::string& stem_;
-  OutputFolder& folder_;
+  NewFiles& folder_;
   std::string text_;
   std::set<std::string> files_, objects_;
 };
@@ -292,7 +291,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
 
   std::vector<fs::path> inputs = images.inputs();
   inputs.push_back(options.model);
-  OutputFolder folder(options.scene.parent_path(), inputs);
+  NewFiles folder(options.scene.parent_path(), inputs);
   for (const PlantFile& file : images.files()) folder.write(file.path, file.bytes);
   folder.write(stem + "-plant.pbrt", SceneWriter(options, materials, stem, folder).plant(geometry));
   folder.write(options.scene.filename().string(), view(geometry, options, stem));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/excerpt.h"
 #include "core/parallel.h"
 #include "imports/scene_import.h"
 #include "jobs/record/common_params.h"
@@ -74,7 +75,8 @@ void report_assumptions(const JobRun& run, const ImportOptions& options, const I
   if (!run.args.given("up")) assumed.push_back(fmt::format("y as up ({})", run.args.spelled("up")));
   if (!assumed.empty())
     run.log().info(fmt::format("{} is OBJ, which does not state them: {}; the plant is {:.4g} m high",
-                               options.model.filename().string(), fmt::join(assumed, " and "), summary.size[2]));
+                               escaped(options.model.filename().string()), fmt::join(assumed, " and "),
+                               summary.size[2]));
 }
 
 /// A warning for leaf materials, which --leaf has given; otherwise a note.

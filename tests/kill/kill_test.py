@@ -12,6 +12,7 @@ no more than the image has.
 """
 
 import os
+import pathlib
 import random
 import re
 import signal
@@ -239,6 +240,68 @@ class Radiometers(FrondTest):
         for words in ((), ("--csv", "-")):
             _, err = self.run_to_end(self.command("flux", "--checkpoint", 1, *words), code=1)
             self.assertIn("--csv", err)
+
+
+@unittest.skipUnless((pathlib.Path(FROND).parent / "frond-assimp").exists(), "frond-assimp is not built")
+class Import(FrondTest):
+    """frond import ends at once, and the process that reads the model with it."""
+
+    def setUp(self):
+        super().setUp()
+        side = 500
+        rows = [f"v {i % side} {i // side} 0" for i in range(side * side)]
+        rows += [f"f {i} {i + 1} {i + side + 1} {i + side}" for i in range(1, side * (side - 1)) if i % side]
+        self.model = self.write("sheet.obj", "\n".join(rows))
+
+    @staticmethod
+    def is_running(pid):
+        try:
+            state = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()[0]
+        except (FileNotFoundError, ProcessLookupError):
+            return False
+        return state != "Z"
+
+    def reader_of(self, process):
+        """The child's process, once it is there."""
+        path = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        self.wait_for(lambda: path.read_text(encoding="ascii").split(), "the reader")
+        return int(path.read_text(encoding="ascii").split()[0])
+
+    def test_its_reader_ends_with_it(self):
+        for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
+            with self.subTest(signal=number.name):
+                process = self.start([FROND, "import", str(self.model), "-o", str(self.folder / "o.pbrt")])
+                reader = self.reader_of(process)
+                process.send_signal(number)
+                process.wait(timeout=20)
+                self.wait_for(lambda reader=reader: not self.is_running(reader), "the end of the reader")
+                self.assertIn(process.returncode, (-number, 128 + number))
+                self.assertEqual(self.files(), ["scene.pbrt", "sheet.obj"])
+
+    def test_killed_at_random_moments_it_leaves_all_or_nothing(self):
+        output = self.folder / "output"
+        output.mkdir()
+        command = [FROND, "import", str(self.model), "-o", str(output / "o.pbrt"), "-q"]
+        begin = time.monotonic()
+        self.run_to_end(command)
+        seconds = time.monotonic() - begin
+        complete = sorted(path.relative_to(output) for path in output.rglob("*"))
+        self.assertEqual([str(path) for path in complete],
+                         ["o-files", "o-files/DefaultMaterial.ply", "o-plant.pbrt", "o.pbrt"])
+        moments = random.Random(4)
+        for _ in range(KILLS // 4):
+            for path in (output / "o.pbrt", output / "o-plant.pbrt"):
+                path.unlink(missing_ok=True)
+            process = self.start(command)
+            try:
+                process.wait(timeout=moments.uniform(0.5, 1) * seconds)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            if (output / "o.pbrt").exists():
+                self.assertTrue((output / "o-plant.pbrt").exists())
+        self.run_to_end(command)  # which removes the folders that the killed ones have left
+        self.assertEqual(sorted(path.relative_to(output) for path in output.rglob("*")), complete)
 
 
 if __name__ == "__main__":

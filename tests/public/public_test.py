@@ -110,8 +110,8 @@ class Case:
 def lacks(case):
     """What the machine or the build lacks for this case; None if nothing."""
     for need in case.record.get("needs", []):
-        if need == "assimp" and not (FROND.parent / "frond_assimp").exists():
-            return "frond_assimp is not built"
+        if need == "assimp" and not (FROND.parent / "frond-assimp").exists():
+            return "frond-assimp is not built"
         if need not in ("assimp",):
             raise Failed(f"{case.name}/case.toml: unknown need {need!r}")
     return None

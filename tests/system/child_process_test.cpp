@@ -6,7 +6,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
+#include <thread>
+
+#include "core/parallel.h"
 
 namespace frond {
 namespace {
@@ -53,7 +57,49 @@ TEST(ChildProcess, ThisProcessTakesSignalsAgainAfterwards) {
   EXPECT_FALSE(sigismember(&blocked, SIGTERM));
 }
 
-TEST(ChildProcess, AMissingProgramIsNoError) { EXPECT_FALSE(run_attached({"/nonexistent/program"})); }
+TEST(ChildProcess, AMissingProgramIsNoError) {
+  EXPECT_FALSE(run_attached({"/nonexistent/program"}));
+  EXPECT_FALSE(run_dependent({"/nonexistent/program"}));
+}
+
+TEST(ChildProcess, ADependentOneReturnsWhatItPrints) {
+  const auto result = run_dependent({"sh", "-c", "echo out; echo err >&2; exit 3"});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->out, "out\n");
+  EXPECT_EQ(result->err, "err\n");
+  EXPECT_EQ(WEXITSTATUS(result->status), 3);
+}
+
+TEST(ChildProcess, ADependentOneIsKilledByAStop) {
+  std::stop_source stop;
+  const StopScope scope(stop.get_token());
+  const std::jthread later([&stop] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    stop.request_stop();
+  });
+  EXPECT_THROW(run_dependent({"sleep", "600"}), Stopped);
+}
+
+/// The child reads its standard input, as frond's reader of models does, until the pipe ends.
+TEST(ChildProcess, ADependentOneSeesThatThisProcessWasKilled) {
+  std::array<int, 2> pipe_ends{};
+  ASSERT_EQ(pipe(pipe_ends.data()), 0);
+  const std::string to = std::to_string(pipe_ends[1]);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    run_dependent({"sh", "-c", "echo a >&" + to + "; cat; echo b >&" + to});
+    _exit(0);
+  }
+  char said = 0;
+  EXPECT_EQ(read(pipe_ends[0], &said, 1), 1);
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  close(pipe_ends[1]);
+  std::string rest;
+  while (read(pipe_ends[0], &said, 1) == 1) rest += said;
+  EXPECT_EQ(rest, "\nb\n");
+  close(pipe_ends[0]);
+}
 
 }  // namespace
 }  // namespace frond
