@@ -192,10 +192,10 @@ std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<boo
   }
   const double tolerance = kSheetDistance * length(geometry.most - geometry.least);
   std::vector<DoubleSheet> all;
+  bool is_complete = true;
   const auto search = [&](std::vector<PlantMesh>& meshes, double stretch) {
     const auto found = double_sheets(meshes, tolerance / stretch, remove);
-    if (!found)
-      log.info("double leaf sheets are not searched where too many triangles lie at one place, as they do here");
+    is_complete = is_complete && found.has_value();
     for (DoubleSheet sheet : found.value_or(std::vector<DoubleSheet>())) {
       sheet.apart *= stretch;
       const auto same = std::ranges::find(all, sheet.material, &DoubleSheet::material);
@@ -210,6 +210,8 @@ std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<boo
   search(geometry.meshes, 1);
   for (PlantObject& object : geometry.objects)
     search(object.meshes, std::cbrt(std::abs(object.instances.front().determinant())));
+  if (!is_complete)
+    log.info("double leaf sheets are not searched where too many triangles lie at one place, as they do here");
   return all;
 }
 
