@@ -60,6 +60,8 @@ class Messages {
       std::string message = text;
       if (const size_t head = message.find(": "); head != message.npos) message.erase(0, head + 2);
       while (message.ends_with('\n')) message.pop_back();
+      // What it checks after reading changes nothing: vertices that no face has, sizes of coordinates.
+      if (message.starts_with("Validation") || message.starts_with("ScenePreprocessor")) return;
       message = "the reader says: " + message.substr(0, kLongest);
       if (warnings_.size() < kMost && std::ranges::find(warnings_, message) == warnings_.end())
         warnings_.push_back(message);

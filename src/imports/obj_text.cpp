@@ -85,7 +85,7 @@ class ModelWriter {
       if (s->keyword == "v")
         vertex(*s);
       else if (s->keyword == "vt")
-        numbers(*s, 1, 3, kTexture);
+        numbers(*s, 1, 2, kTexture);  // the third is depth, of which images have none
       else if (s->keyword == "vn")
         numbers(*s, 3, 3, kNormal);
       else if (s->keyword == "f" || s->keyword == "fo")
