@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 
 #include "imports/gltf_check.h"
 #include "imports/obj_lines.h"
