@@ -410,8 +410,7 @@ class SceneBuilder {
                                  faces, faces));
     of_surface.by_primitive.resize(primitives_of(surface.geometry));
     StopPoll poll;
-    for (unsigned i = 0; i < of_surface.by_primitive.size();) {
-      poll();
+    for (unsigned i = 0; i < of_surface.by_primitive.size(); poll()) {
       const Primitives face = face_of(surface.geometry, i);
       auto emitting = std::make_unique<ShapeEmitter>(surface, face);
       const AreaLight* const light = emitting->area() > 0 ? add_over(std::move(emitting)) : nullptr;
