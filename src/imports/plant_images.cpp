@@ -43,13 +43,16 @@ std::string plain_name(std::string_view name) {
   return out.empty() ? "unnamed" : out;
 }
 
+std::string PlantImages::decoded_name(const std::string& name) const {
+  return lower_case(model_.extension().string()) == ".obj" ? name : percent_decoded(name);
+}
+
 /// Exporters write absolute paths of their own machine, and Windows' separators; names in glTF are percent-encoded,
 /// unless an exporter has forgotten it. A file that is not at the path is searched for by its name in the model's
 /// folder and in its subfolder textures.
 fs::path PlantImages::found(const std::string& name) const {
   const fs::path folder = fs::canonical(model_).parent_path();
-  const bool is_obj = lower_case(model_.extension().string()) == ".obj";
-  for (std::string text : {name, is_obj ? name : percent_decoded(name)}) {
+  for (std::string text : {name, decoded_name(name)}) {
     std::ranges::replace(text, '\\', '/');
     const fs::path path = text;
     for (const fs::path& candidate : {folder / path, folder / path.filename(), folder / "textures" / path.filename()}) {
@@ -109,7 +112,7 @@ std::string PlantImages::new_path(const std::string& name, const std::string& ex
 std::string PlantImages::original(int32_t image) {
   Decoded& result = *decoded(image);
   if (result.path.starts_with('.')) {
-    std::string name = images_[size_t(image)].name;
+    std::string name = decoded_name(images_[size_t(image)].name);
     std::ranges::replace(name, '\\', '/');
     result.path = new_path(fs::path(name).stem().string(), result.path);
     files_.push_back({result.path, result.bytes});

@@ -50,6 +50,8 @@ class PlantImages {
   Decoded* decoded(int32_t image);
   /// Returns a path for a file, which no other one has.
   std::string new_path(const std::string& name, const std::string& extension);
+  /// Returns a name of the model without glTF's percent-encoding.
+  std::string decoded_name(const std::string& name) const;
   /// Returns where a file that the model names is. Throws InputError if it is not in the model's folder.
   std::filesystem::path found(const std::string& name) const;
 

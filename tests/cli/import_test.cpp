@@ -259,10 +259,12 @@ TEST_F(ImportCommand, WhatCannotBeMappedIsNamed) {
 
 /// A warning, which is an error in strict mode: then nothing is written.
 TEST_F(ImportCommand, LossesAreErrorsInStrictMode) {
-  folder_.write("plant.gltf", gltf(R"({"mesh":0})", R"({"name":"pot","extensions":{"KHR_materials_sheen":{}}})",
-                                   embedded(), R"(,"extensionsUsed":["KHR_materials_sheen"],"animations":[{},{}])"));
+  folder_.write("plant.gltf", gltf(R"({"mesh":0,"children":[1,2]},{"camera":0},{"camera":0})",
+                                   R"({"name":"pot","extensions":{"KHR_materials_sheen":{}}})", embedded(),
+                                   R"(,"extensionsUsed":["KHR_materials_sheen"],
+"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}])"));
   EXPECT_THAT(imported("plant.gltf").err,
-              HasSubstr("warning: left out: animation (2 times), extension KHR_materials_sheen of \"pot\"\n"));
+              HasSubstr("warning: left out: extension KHR_materials_sheen of \"pot\", camera (2 times)\n"));
   EXPECT_THAT(refusal("plant.gltf", {"--strict"}), HasSubstr("KHR_materials_sheen"));
   folder_.write("plant.mtl", "newmtl pot\nKe 1 1 1\n");
   folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl pot\nf 1 2 3\nf 1 2\n");
