@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+// To be included after <nlohmann/json.hpp>, which no header of frond includes: it takes long to compile.
 namespace frond {
 
 /// What an accessor has to be for the reader library to read it right.

@@ -162,6 +162,7 @@ class GltfCheck {
     if (seen_meshes_.insert(*mesh_index).second) this->mesh(*mesh, "meshes[" + std::to_string(*mesh_index) + "]");
   }
 
+  /// Each mesh once.
   void mesh(const Json& mesh, const std::string& place) {
     properties("mesh", mesh);
     const Json* primitives = member(mesh, "primitives");
@@ -170,6 +171,7 @@ class GltfCheck {
       primitive((*primitives)[i], place + ".primitives[" + std::to_string(i) + "]");
   }
 
+  /// Its accessors, and its material once.
   void primitive(const Json& primitive, const std::string& place) {
     properties("primitive", primitive);
     constexpr double kTriangles = 4, kFan = 6;
@@ -273,13 +275,13 @@ class GltfCheck {
     return sampler;
   }
 
-  static constexpr double kRepeat = 10497;
+  static constexpr double kRepeat = 10497;  // the default of both directions
 
   const Json& document_;
   bool is_binary_;
   LossList losses_;
   std::set<std::string> used_, defined_, named_;  ///< extensions
-  std::vector<uint64_t> nodes_;
+  std::vector<uint64_t> nodes_;                   ///< of the scene, each after its parent
   std::set<uint64_t> seen_nodes_, seen_meshes_;
   std::map<uint64_t, std::set<uint64_t>> materials_;  ///< sets of texture coordinates
 };

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string_view>
 
+// To be included after <nlohmann/json.hpp>, which no header of frond includes: it takes long to compile.
 namespace frond {
 
 /// Parses the JSON of a glTF file, or of its first chunk if the file is a .glb. Throws std::runtime_error for what is

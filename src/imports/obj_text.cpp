@@ -231,11 +231,14 @@ class ModelWriter {
 
   /// One file whose name may have blanks, or several.
   void library(const ObjStatement& s, const std::function<bool(const std::string&)>& is_usable) {
-    const auto add = [&](const std::string& name) { libraries_.append("mtllib ").append(name).append("\n"); };
+    // Each file once.
+    const auto add = [&](const std::string& name) {
+      if (libraries_seen_.insert(name).second) libraries_.append("mtllib ").append(name).append("\n");
+    };
     split_words(s.rest, words_);
     const std::string whole(s.rest);
     const auto is_word_usable = [&](std::string_view word) { return is_usable(std::string(word)); };
-    if (whole.empty() || !libraries_seen_.insert(whole).second) return;
+    if (whole.empty()) return;
     if (words_.size() > 1 && std::ranges::all_of(words_, is_word_usable)) {
       for (const std::string_view word : words_) add(std::string(word));
     } else {
@@ -256,11 +259,11 @@ class ModelWriter {
   std::string_view text_;
   LossList& losses_;
   std::set<std::string>& used_;
-  std::array<uint64_t, 3> total_{}, seen_{};
-  std::array<bool, 3> lacking_{};
-  std::array<size_t, 3> first_{};
+  std::array<uint64_t, 3> total_{}, seen_{};  ///< of the file, and up to here
+  std::array<bool, 3> lacking_{};             ///< kinds that a face names and the file does not have
+  std::array<size_t, 3> first_{};             ///< lines of the first losses of faces
   std::string out_, libraries_;
-  std::set<std::string> libraries_seen_;
+  std::set<std::string> libraries_seen_;  ///< names of material files
   std::vector<std::string_view> words_;
   std::vector<Corner> corners_;
   std::string material_;  ///< until it has a face

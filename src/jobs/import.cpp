@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/excerpt.h"
+#include "core/messages/excerpt.h"
 #include "core/parallel.h"
 #include "imports/scene_import.h"
 #include "jobs/record/common_params.h"

@@ -1,9 +1,8 @@
-#include "imports/gltf_accessors.h"
-
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
+#include "imports/gltf_accessors.h"
 #include "imports/gltf_json.h"
 
 namespace frond {
@@ -11,6 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Values of componentType, which are those of OpenGL.
 constexpr uint64_t kFloat = 5126, kByte = 5121, kShort = 5123, kInt = 5125;
 
 /// Returns the size of a component, bytes; 0 if the type is unknown.
@@ -20,6 +20,7 @@ uint64_t size_of(uint64_t component) {
   return component == kInt || component == kFloat ? 4 : 0;
 }
 
+/// Returns the values of a type, for messages.
 std::string name_of(uint64_t component) {
   constexpr const char* kNames[] = {"bytes", "unsigned bytes", "shorts", "unsigned shorts",
                                     "",      "unsigned ints",  "floats"};
@@ -58,6 +59,7 @@ class AccessorCheck {
 
   [[noreturn]] void fail(const std::string& problem) const { throw std::runtime_error(place_ + ": " + problem); }
 
+  /// Whether the library reads the values as they are meant: it copies bytes.
   void check_type(const Json& accessor, uint64_t component, AccessorUse use) const {
     const std::string_view shape = text(accessor, "type");
     const bool is_index = use == AccessorUse::indices;
@@ -95,6 +97,7 @@ class AccessorCheck {
     return stride;
   }
 
+  /// The values that are changed, and their indices.
   void check_sparse(const Json& sparse, uint64_t count, uint64_t size) const {
     const auto changed = integer(sparse, "count");
     const Json *indices = member(sparse, "indices"), *values = member(sparse, "values");

@@ -1,5 +1,3 @@
-#include "imports/gltf_json.h"
-
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -7,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "imports/gltf_json.h"
 
 namespace frond {
 namespace {
