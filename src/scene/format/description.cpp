@@ -29,18 +29,6 @@ bool is_outside(const fs::path& folder, const fs::path& file) {
   return std::ranges::mismatch(real_folder, real).in1 != real_folder.end();
 }
 
-void InstanceList::add(uint32_t object, const SceneTransform& map) {
-  const PreciseTransform::Rows& rows = map.precise.rows();
-  if (precise.empty() && is_far({rows[0][3], rows[1][3], rows[2][3]})) {
-    for (const AffineMap& before : *maps) precise.push_back(precise_rows(before));
-    precise.push_back(rows);
-  } else if (!precise.empty()) {
-    precise.push_back(rows);
-  }
-  maps->push_back({map.rows()});
-  objects.push_back(object);
-}
-
 /// Candidates are tried in order: first with the name as written, then with slashes for backslashes.
 fs::path found(const SceneSettings& scene, const std::string& name, const Location& where) {
   if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
@@ -64,6 +52,18 @@ fs::path found(const SceneSettings& scene, const std::string& name, const Locati
 }
 
 }  // namespace
+
+void InstanceList::add(uint32_t object, const SceneTransform& map) {
+  const PreciseTransform::Rows& rows = map.precise.rows();
+  if (precise.empty() && is_far({rows[0][3], rows[1][3], rows[2][3]})) {
+    for (const AffineMap& before : *maps) precise.push_back(precise_rows(before));
+    precise.push_back(rows);
+  } else if (!precise.empty()) {
+    precise.push_back(rows);
+  }
+  maps->push_back({map.rows()});
+  objects.push_back(object);
+}
 
 /// The scene's folder is that of its main file. What the command line names is the user's own, wherever it lies.
 fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
