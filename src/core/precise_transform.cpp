@@ -15,8 +15,8 @@ Rows from_columns(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& o
   return {{{x.x, y.x, z.x, origin.x}, {x.y, y.y, z.y, origin.y}, {x.z, y.z, z.z, origin.z}}};
 }
 
-/// Inverse by cofactors. A matrix whose columns are coplanar up to `flat` counts as singular; the entries of its inverse
-/// are NaN.
+/// Inverse by cofactors. A matrix whose columns are coplanar up to `flat` counts as singular; the entries of its
+/// inverse are NaN.
 Rows invert(const Rows& m, double flat) {
   const Vec3d x = column(m, 0), y = column(m, 1), z = column(m, 2), origin = column(m, 3);
   const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
@@ -45,8 +45,7 @@ Rows multiply(const Rows& a, const Rows& b) {
 /// The limit is the rounding of decimals in a scene file.
 PreciseTransform::PreciseTransform(const Rows& rows) : rows_(rows), inverse_(invert(rows, kFlat)) {}
 
-PreciseTransform::PreciseTransform(const Transform& t)
-    : rows_(to_double(t.rows())), inverse_(invert(rows_, 0)) {}
+PreciseTransform::PreciseTransform(const Transform& t) : rows_(to_double(t.rows())), inverse_(invert(rows_, 0)) {}
 
 PreciseTransform PreciseTransform::translate(const Vec3d& by) {
   return {from_columns({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, by), from_columns({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, -by)};

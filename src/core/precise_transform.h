@@ -53,8 +53,8 @@ class PreciseTransform {
 /// Largest absolute value of the coordinates.
 inline double largest_coordinate(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Coordinates beyond this are far: 32-bit floats have steps of 2^-15 there, and rays that leave a surface start 2 mm above
-/// it (offset_origin) if the unit is a metre. A scene of leaves with a radius of 0.08 has a bias of 4e-5 there.
+/// Coordinates beyond this are far: 32-bit floats have steps of 2^-15 there, and rays that leave a surface start 2 mm
+/// above it (offset_origin) if the unit is a metre. A scene of leaves with a radius of 0.08 has a bias of 4e-5 there.
 inline constexpr double kFar = 256;
 inline bool is_far(const Vec3d& p) { return largest_coordinate(p) > kFar; }
 /// Distance of neighbouring 32-bit floats at `x`.

@@ -98,7 +98,8 @@ std::array<double, 3> move_obj_to_origin(std::string& text) {
         for (size_t axis = 0; axis < 3; ++axis) {
           std::array<char, 32> digits;
           const double x = v.p[axis] - origin[axis];
-          const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x, std::chars_format::general, 12);
+          const auto end =
+              std::to_chars(digits.data(), digits.data() + digits.size(), x, std::chars_format::general, 12);
           moved += ' ';
           moved.append(digits.data(), end.ptr);
         }

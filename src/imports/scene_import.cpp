@@ -73,9 +73,10 @@ class SceneWriter {
   /// Places what follows, which is relative to a point, unless that is 0.
   void begin_at(const Vec3d& origin) {
     if (origin == Vec3d{}) return;
-    text_ += fmt::format("# The model is in map coordinates: its files are relative to this point, in 32-bit floats.\n"
-                         "AttributeBegin\nTranslate {} {} {}\n",
-                         origin.x, origin.y, origin.z);
+    text_ += fmt::format(
+        "# The model is in map coordinates: its files are relative to this point, in 32-bit floats.\n"
+        "AttributeBegin\nTranslate {} {} {}\n",
+        origin.x, origin.y, origin.z);
   }
   void end_at(const Vec3d& origin) {
     if (origin != Vec3d{}) text_ += "AttributeEnd\n";
@@ -159,8 +160,8 @@ std::string view(const PlantGeometry& geometry, const ImportOptions& options, co
       "LightSource \"sky\" \"float elevation\" 50 \"float azimuth\" 230 \"float albedo\" 0.2 \"float illuminance\" "
       "3.14159\n\n"
       "Include \"{}-plant.pbrt\"\n",
-      FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, digits(eye.x), digits(eye.y),
-      digits(eye.z), digits(at.x), digits(at.y), digits(at.z), stem, stem);
+      FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, digits(eye.x), digits(eye.y), digits(eye.z),
+      digits(at.x), digits(at.y), digits(at.z), stem, stem);
 }
 
 /// Which materials have triangles.
@@ -221,9 +222,10 @@ void warn_of_steps(const PlantGeometry& geometry, const Log& log) {
   const double reach = std::max(largest_coordinate(geometry.least), largest_coordinate(geometry.most));
   const double step = float_step(reach);
   if (reach <= kFar || step < kVisible * largest_coordinate(geometry.most - geometry.least)) return;
-  log.warn({}, fmt::format("its coordinates are 32-bit floats up to {:.3g} units from the origin, where their step is {:g} "
-                           "units: move the model to the origin before it is exported, or export it as OBJ",
-                           reach, step));
+  log.warn({},
+           fmt::format("its coordinates are 32-bit floats up to {:.3g} units from the origin, where their step is {:g} "
+                       "units: move the model to the origin before it is exported, or export it as OBJ",
+                       reach, step));
 }
 
 /// Returns the name for files beside the scene, which scene files quote.

@@ -131,11 +131,10 @@ void check_target(const Scene& scene, const Target& target) {
     check_coordinates({float(target.x0), float(target.y0), float(z)}, "a corner of the target is", {});
     check_coordinates({float(target.x1), float(target.y1), float(z)}, "a corner of the target is", {});
   }
-  const bool is_beside =
-      target.x1 <= b.min.x || target.x0 >= b.max.x || target.y1 <= b.min.y || target.y0 >= b.max.y;
+  const bool is_beside = target.x1 <= b.min.x || target.x0 >= b.max.x || target.y1 <= b.min.y || target.y0 >= b.max.y;
   if (is_beside && !scene.period())
-    fail({}, "the target lies beside the scene, which reaches from ({:.10g}, {:.10g}) to ({:.10g}, {:.10g})", b.min.x, b.min.y,
-         b.max.x, b.max.y);
+    fail({}, "the target lies beside the scene, which reaches from ({:.10g}, {:.10g}) to ({:.10g}, {:.10g})", b.min.x,
+         b.min.y, b.max.x, b.max.y);
 }
 
 double distance_above(const Scene& scene, const Target& target, double cosine) {

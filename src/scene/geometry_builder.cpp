@@ -239,9 +239,10 @@ class GeometryBuilder {
   static void warn_of_steps(const InstanceTable& table, const Params& params) {
     constexpr double kLargest = 1. / 256;
     if (table.step() >= kLargest)
-      params.warn("filename", fmt::format("its positions are 32-bit floats up to {:.3g} units from the origin, where their "
-                                          "step is {:g} units; \"transform\" may hold 64-bit floats (<f8)",
-                                          table.step() * (1 << 23), table.step()));
+      params.warn("filename",
+                  fmt::format("its positions are 32-bit floats up to {:.3g} units from the origin, where their "
+                              "step is {:g} units; \"transform\" may hold 64-bit floats (<f8)",
+                              table.step() * (1 << 23), table.step()));
   }
 
   /// Throws InputError with the nearest object name.

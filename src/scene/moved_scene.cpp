@@ -53,8 +53,8 @@ SceneTransform moved_view(const SceneTransform& camera_from_world, const Vec3d& 
   return {view.inverse().rounded().inverse(), view};
 }
 
-/// Moves a plug-in with its transform, which maps to a space with a new origin. Points that are far in the plug-in's own
-/// space become relative to the point that is mapped to the origin: then nothing is lost when both are rounded.
+/// Moves a plug-in with its transform, which maps to a space with a new origin. Points that are far in the plug-in's
+/// own space become relative to the point that is mapped to the origin: then nothing is lost when both are rounded.
 void move(const Vec3d& origin, const PluginInfo* info, ParsedPlugin& plugin, SceneTransform& to_space) {
   to_space = moved(to_space, origin);
   if (!has_far_point(plugin.params)) return;
@@ -119,13 +119,14 @@ void move_instances(const Vec3d& origin, const std::vector<ObjectDescription>& o
   for (size_t i = 0; i < maps->size(); ++i) {
     const uint32_t object = list.objects[i];
     if (stays(object)) continue;
-    (*maps)[i] = moved(list.precise.empty() ? precise_rows((*maps)[i]) : list.precise[i], origin, objects[object].origin);
+    (*maps)[i] =
+        moved(list.precise.empty() ? precise_rows((*maps)[i]) : list.precise[i], origin, objects[object].origin);
   }
   list.maps = std::move(maps);
 }
 
-/// A planar mapping takes its offset in double precision. The noise and the cubes of other textures have a period of 256
-/// in each octave's space, so that whole periods are subtracted; a mapping around an axis has its place in space.
+/// A planar mapping takes its offset in double precision. The noise and the cubes of other textures have a period of
+/// 256 in each octave's space, so that whole periods are subtracted; a mapping around an axis has its place in space.
 void move_texture(const Vec3d& origin, TextureDescription& texture) {
   constexpr double kPeriod = 256;
   ParsedPlugin& plugin = texture.plugin;
@@ -173,8 +174,6 @@ void move_target(ParsedPlugin& camera, MovingTransform& camera_from_world) {
   camera_from_world.start = SceneTransform(PreciseTransform::translate(-near) * camera_from_world.start.precise);
 }
 
-}  // namespace
-
 void move_settings(const Vec3d& origin, const Registry& registry, SceneSettings& settings) {
   if (origin != Vec3d{}) {
     MovingTransform& view = settings.camera_from_world;
@@ -196,6 +195,8 @@ void move_settings(const Vec3d& origin, const Registry& registry, SceneSettings&
     move(origin, registry.media.find(medium.plugin.name), medium.plugin, medium.world_from_medium);
 }
 
+}  // namespace
+
 SceneDescription moved_to(const SceneOrigins& origins, SceneDescription description, const Registry& registry) {
   move_settings(origins.world, registry, description);
   auto& objects = description.objects;
@@ -207,6 +208,19 @@ SceneDescription moved_to(const SceneOrigins& origins, SceneDescription descript
     move_instances(object.origin, objects, object.instances);
   }
   return description;
+}
+
+std::optional<SceneDescription> moved_to_origins(const SceneDescription& description, const Registry& registry,
+                                                 const Log& log, const Vec3d* known, Vec3d& world) {
+  const SceneOrigins origins = known ? SceneOrigins{*known, {}, *known != Vec3d{}} : find_origins(description, log);
+  world = origins.world;
+  if (!origins.move_something) return {};
+  if (!known && world != Vec3d{})
+    log.info(
+        fmt::format("the scene is far from the origin of its coordinates: positions are kept relative to ({:.10g}, "
+                    "{:.10g}, {:.10g})",
+                    world.x, world.y, world.z));
+  return moved_to(origins, description, registry);
 }
 
 }  // namespace frond

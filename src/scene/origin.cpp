@@ -121,6 +121,7 @@ class OriginFinder {
   void add(const ShapeDescription& shape, std::vector<Anchor>& anchors) {
     const std::vector<ParsedParam>& params = shape.plugin.params;
     if (shape.plugin.name == "instances") return add_table(shape, anchors);
+    constexpr std::string_view kSizes[] = {"radius", "height", "zmin", "zmax"};  // of quadrics
     Box box;
     double weight = 0, radius = 0;
     if (shape.plugin.name == "plymesh") {
@@ -132,7 +133,8 @@ class OriginFinder {
       for (const ParsedParam& p : params) {
         const auto* v = std::get_if<std::vector<double>>(&p.values);
         if (!v) continue;
-        if (p.name == "radius" && v->size() == 1) radius = std::abs((*v)[0]);
+        if (v->size() == 1 && std::ranges::find(kSizes, p.name) != std::end(kSizes))
+          radius = std::max(radius, std::abs((*v)[0]));
         if (p.type != "point3" && p.type != "point") continue;
         for (size_t i = 0; i + 2 < v->size(); i += 3) box.add({(*v)[i], (*v)[i + 1], (*v)[i + 2]});
         weight += double(v->size() / 3);
@@ -142,7 +144,8 @@ class OriginFinder {
     const PreciseTransform::Rows& rows = shape.world_from_object.precise.rows();
     const Vec3d half = (box.max - box.min) / 2.0, middle = box.min + half;
     has_far_points_ = has_far_points_ || is_far(box.min) || is_far(box.max);
-    anchors.push_back({point(rows, middle), (length(half) + radius) * stretch(rows), weight, shape.area_light.has_value()});
+    anchors.push_back(
+        {point(rows, middle), (length(half) + radius) * stretch(rows), weight, shape.area_light.has_value()});
   }
 
   void add_table(const ShapeDescription& shape, std::vector<Anchor>& anchors) {
@@ -183,14 +186,14 @@ class OriginFinder {
     std::vector<Anchor> compact;
     std::ranges::copy_if(anchors, std::back_inserter(compact), [](const Anchor& a) { return a.extent <= kWide; });
     if (compact.empty()) compact = anchors;
-    const auto is_near = [](const Anchor& a) { return largest_coordinate(a.p) <= kFar + (a.extent > kWide ? a.extent : 0); };
+    const auto is_near = [](const Anchor& a) { return largest_coordinate(a.p) <= kFar + a.extent; };
     Space space;
     double near = 0;
     for (const Anchor& a : compact) space.weight += a.weight, near += is_near(a) ? a.weight : 0;
     if (space.weight > 0 && near <= kFewNear * space.weight) {
       std::erase_if(compact, is_near);
       const Vec3d median = weighted_median(compact);
-      const Vec3d whole{std::round(median.x), std::round(median.y), std::round(median.z)};
+      const Vec3d whole = Vec3d{std::round(median.x), std::round(median.y), std::round(median.z)} + Vec3d{};  // no -0
       if (is_far(whole)) space.origin = whole;
     }
     space.middle = weighted_median(compact);
@@ -211,11 +214,12 @@ class OriginFinder {
       if (!farthest || distance > largest_coordinate(farthest->p - origin)) farthest = &a;
     }
     if (!farthest) return;
-    log_.warn({}, fmt::format("{} of {} shapes and instances are small beside their distance from the others: one is at "
-                              "({:.10g}, {:.10g}, {:.10g}), where coordinates are rounded to steps of {:g}, the scene's "
-                              "origin is ({:.10g}, {:.10g}, {:.10g})",
-                              count, anchors.size(), farthest->p.x, farthest->p.y, farthest->p.z,
-                              float_step(largest_coordinate(farthest->p - origin)), origin.x, origin.y, origin.z));
+    log_.warn({},
+              fmt::format("{} of {} shapes and instances are small beside their distance from the others: one is at "
+                          "({:.10g}, {:.10g}, {:.10g}), where coordinates are rounded to steps of {:g}, the scene's "
+                          "origin is ({:.10g}, {:.10g}, {:.10g})",
+                          count, anchors.size(), farthest->p.x, farthest->p.y, farthest->p.z,
+                          float_step(largest_coordinate(farthest->p - origin)), origin.x, origin.y, origin.z));
   }
 
   const SceneDescription& description_;

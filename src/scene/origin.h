@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/messages/log.h"
@@ -25,7 +26,9 @@ SceneOrigins find_origins(const SceneDescription& description, const Log& log);
 
 /// Returns the description in coordinates relative to the origins: transforms, points among the parameters, targets.
 SceneDescription moved_to(const SceneOrigins& origins, SceneDescription description, const Registry& registry);
-/// The same without shapes.
-void move_settings(const Vec3d& origin, const Registry& registry, SceneSettings& settings);
+/// Finds the origins and moves the description; returns nullopt if there is nothing to move. `known`: origin of a scene
+/// with the same geometry; nullptr: none. `world` becomes that of the world, which is printed.
+std::optional<SceneDescription> moved_to_origins(const SceneDescription& description, const Registry& registry,
+                                                 const Log& log, const Vec3d* known, Vec3d& world);
 
 }  // namespace frond

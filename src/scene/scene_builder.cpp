@@ -467,34 +467,20 @@ std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, cons
   return leaves;
 }
 
-/// Builds from the description, or from one in coordinates relative to the scene's origins.
 Scene::Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
              const std::filesystem::path& cache, const Scene* other, SharedWork* shared) {
   SharedWork own;
-  const auto build = [&](const SceneDescription& of) {
-    SceneBuilder(*this, of, registry, pool, log, cache).build(of, other, shared ? *shared : own);
-  };
-  const SceneOrigins origins = other ? SceneOrigins{other->origin_, {}, other->origin_ != Vec3d{}}
-                                     : find_origins(description, log);
-  origin_ = origins.world;
-  if (!origins.move_something) {
-    build(description);
-    return;
-  }
-  if (!other && origin_ != Vec3d{})
-    log.info(fmt::format("the scene is far from the origin of its coordinates: positions are kept relative to ({:.10g}, "
-                         "{:.10g}, {:.10g})",
-                         origin_.x, origin_.y, origin_.z));
-  build(moved_to(origins, description, registry));
+  const auto moved = moved_to_origins(description, registry, log, other ? &other->origin_ : nullptr, origin_);
+  const SceneDescription& near = moved ? *moved : description;
+  SceneBuilder(*this, near, registry, pool, log, cache).build(near, other, shared ? *shared : own);
 }
 
 /// Builds into a scene that is discarded.
 void Scene::check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log) {
   Scene scene;
-  const SceneOrigins origins = find_origins(description, log);
-  const SceneDescription moved = origins.move_something ? moved_to(origins, description, registry) : SceneDescription();
-  const SceneDescription& of = origins.move_something ? moved : description;
-  SceneBuilder(scene, of, registry, pool, log, {}).check(of);
+  const auto moved = moved_to_origins(description, registry, log, nullptr, scene.origin_);
+  const SceneDescription& near = moved ? *moved : description;
+  SceneBuilder(scene, near, registry, pool, log, {}).check(near);
 }
 
 }  // namespace frond

@@ -25,7 +25,8 @@ TEST(ObjOrigin, SubtractsInDoublePrecision) {
 }
 
 TEST(ObjOrigin, LeavesVerticesThatAreNotThreeNumbers) {
-  for (const char* strange : {"v 500000 1 2 0.5\n", "v 500000,1 1 2\n", "v 500000 nan 2\n", "v 500000 1\n", "v 5e5 1 2\\\n"}) {
+  for (const char* strange :
+       {"v 500000 1 2 0.5\n", "v 500000,1 1 2\n", "v 500000 nan 2\n", "v 500000 1\n", "v 5e5 1 2\\\n"}) {
     std::string text = strange;
     EXPECT_EQ(move_obj_to_origin(text), Origin()) << strange;
     EXPECT_EQ(text, strange);

@@ -1,5 +1,5 @@
-// Scenes far from the origin of their coordinates: which point becomes the origin of the rendered world, and that shapes,
-// instances, lights, media, cameras and textures are the same as in a scene that lies there.
+// Scenes far from the origin of their coordinates: which point becomes the origin of the rendered world, and that
+// shapes, instances, lights, media, cameras and textures are the same as in a scene that lies there.
 
 #include "scene/origin.h"
 
@@ -69,7 +69,8 @@ class Origin : public ::testing::Test {
       others += !(distance <= slack);
       if (distance < 0.1f) most = std::max(most, distance);
     }
-    EXPECT_LE(others, a.size() / 200) << "a ray may pass an edge on its other side; points are up to " << most << " away";
+    EXPECT_LE(others, a.size() / 200) << "a ray may pass an edge on its other side; points are up to " << most
+                                      << " away";
   }
   /// Bytes of a PLY file with one square in doubles.
   std::string square(const std::string& name, const Vec3d& at, const char* type = "double") {
@@ -80,9 +81,9 @@ class Origin : public ::testing::Test {
     for (const auto& [x, y] : {std::pair{-0.4, -0.3}, {0.5, -0.3}, {0.5, 0.35}, {-0.4, 0.35}})
       for (const double v : {x + at.x, y + at.y, 0.1 * x + at.z}) {
         const auto single = float(v);
-        text.append(type == std::string("double") ? reinterpret_cast<const char*>(&v)
-                                                  : reinterpret_cast<const char*>(&single),
-                    type == std::string("double") ? 8 : 4);
+        text.append(
+            type == std::string("double") ? reinterpret_cast<const char*>(&v) : reinterpret_cast<const char*>(&single),
+            type == std::string("double") ? 8 : 4);
       }
     text += '\4';
     for (const int i : {0, 1, 2, 3}) text.append(reinterpret_cast<const char*>(&i), 4);
@@ -101,6 +102,8 @@ constexpr const char* kLight = "LightSource \"infinite\"\n";
 TEST_F(Origin, StaysWhereContentIsNear) {
   EXPECT_FALSE(origins("Shape \"sphere\" Translate 200 -250 0 Shape \"sphere\"").move_something);
   EXPECT_FALSE(origins("Shape \"disk\" \"float radius\" 1e6 Translate 1 2 3 Shape \"sphere\"").move_something);
+  EXPECT_FALSE(origins("Translate 0 0 -1000 Shape \"sphere\" \"float radius\" 1000").move_something) << "reaches 0";
+  EXPECT_FALSE(origins("Translate 0 0 -900 Shape \"disk\" \"float height\" 900").move_something);
   // Plants, and a mountain with many more vertices behind them.
   std::string mountain = "Translate 9000 0 0 Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [";
   for (int i = 0; i < 50; ++i) mountain += fmt::format("{} {} {} ", i % 7, i % 5, i % 3);
@@ -172,8 +175,9 @@ TEST_F(Origin, MeshesOfDoublesKeepTheirShape) {
   const auto back = scene(kLight + translate(-kMap) + "Shape \"plymesh\" \"string filename\" \"there.ply\"");
   EXPECT_EQ(back->origin(), Vec3d());
   expect_same(*near, *back, 1e-7f);
-  const auto by_hand = scene(
-      kLight + std::string("Shape \"plymesh\" \"string filename\" \"there.ply\" \"point3 origin\" [500000 5200000 312]"));
+  const auto by_hand =
+      scene(kLight +
+            std::string("Shape \"plymesh\" \"string filename\" \"there.ply\" \"point3 origin\" [500000 5200000 312]"));
   EXPECT_EQ(by_hand->origin(), Vec3d());
   expect_same(*near, *by_hand, 1e-7f);
   EXPECT_TRUE(said_.empty());
@@ -188,14 +192,14 @@ TEST_F(Origin, ObjectsAndInstancesFarAwayAreTheSame) {
   const auto in_map = scene(
       kLight + ("ObjectBegin \"o\" " + disk + "ObjectEnd " + translate(kMap) + "Rotate 20 1 0 0 ObjectInstance \"o\""));
   expect_same(*near, *in_map, 1e-6f);
-  const auto object_in_map = scene(kLight + ("ObjectBegin \"o\" AttributeBegin " + translate(kMap) + disk +
-                                             "AttributeEnd ObjectEnd Rotate 20 1 0 0 " + translate(-kMap) +
-                                             "ObjectInstance \"o\""));
+  const auto object_in_map =
+      scene(kLight + ("ObjectBegin \"o\" AttributeBegin " + translate(kMap) + disk +
+                      "AttributeEnd ObjectEnd Rotate 20 1 0 0 " + translate(-kMap) + "ObjectInstance \"o\""));
   EXPECT_EQ(object_in_map->origin(), Vec3d());
   expect_same(*near, *object_in_map, 1e-6f);
-  const auto moving =
-      scene(kLight + ("ObjectBegin \"o\" " + disk + "ObjectEnd " + translate(kMap) +
-                      "Rotate 20 1 0 0 ActiveTransform EndTime Translate 0 0 1 ActiveTransform All ObjectInstance \"o\""));
+  const auto moving = scene(
+      kLight + ("ObjectBegin \"o\" " + disk + "ObjectEnd " + translate(kMap) +
+                "Rotate 20 1 0 0 ActiveTransform EndTime Translate 0 0 1 ActiveTransform All ObjectInstance \"o\""));
   expect_same(*near, *moving, 1e-6f);
   EXPECT_TRUE(said_.empty());
 }
@@ -205,7 +209,8 @@ TEST_F(Origin, TablesOfDoublesKeepTheirPositions) {
     InstanceWriter writer(folder_.name_of(name), 3, {"share"}, type);
     for (int i = 0; i < 3; ++i) {
       const float value = float(i);
-      writer.add(oriented_rows(Vec3d{0.3 * i - 0.3, 0.1, 0.2} + at, normalize(Vec3d{0.1, 0.2, 1}), 0, 0.2), {&value, 1});
+      writer.add(oriented_rows(Vec3d{0.3 * i - 0.3, 0.1, 0.2} + at, normalize(Vec3d{0.1, 0.2, 1}), 0, 0.2),
+                 {&value, 1});
     }
     writer.finish();
   };
@@ -239,9 +244,10 @@ TEST_F(Origin, LightsAndCamerasFollow) {
   };
   const auto world = [&](const Vec3d& at) {
     return translate(at) + leaf + "Identity\n" +
-           fmt::format("LightSource \"point\" \"point3 from\" [{0} {1} {2}]\nLightSource \"spot\" \"point3 from\" [{0} {1} "
-                       "{2}] \"point3 to\" [{3} {4} {5}]\n",
-                       at.x + 0.5, at.y + 0.25, at.z + 2, at.x, at.y, at.z) +
+           fmt::format(
+               "LightSource \"point\" \"point3 from\" [{0} {1} {2}]\nLightSource \"spot\" \"point3 from\" [{0} {1} "
+               "{2}] \"point3 to\" [{3} {4} {5}]\n",
+               at.x + 0.5, at.y + 0.25, at.z + 2, at.x, at.y, at.z) +
            fmt::format("LightSource \"infinite\" \"point3 portal\" [{0} {2} {4} {0} {3} {4} {1} {3} {4} {1} {2} {4}]\n",
                        at.x - 1, at.x + 1, at.y - 1, at.y + 1, at.z + 3);
   };
@@ -265,12 +271,14 @@ TEST_F(Origin, LightsAndCamerasFollow) {
 TEST_F(Origin, TexturesAndMediaFollow) {
   const auto world = [&](const Vec3d& at) {
     return fmt::format(
-               "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"point3 p0\" [{} {} {}] \"point3 p1\" [{} {} {}] "
+               "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"point3 p0\" [{} {} {}] \"point3 p1\" [{} {} "
+               "{}] "
                "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 \"float density\" [1 3]\n",
                at.x - 1, at.y - 1, at.z - 1, at.x + 1, at.y + 1, at.z + 1) +
-           fmt::format("Texture \"t\" \"float\" \"checkerboard\" \"string mapping\" \"planar\" \"vector3 v1\" [2 0 0] "
-                       "\"vector3 v2\" [0 2 0] \"float udelta\" {} \"float vdelta\" {} \"float tex1\" 0 \"float tex2\" 1\n",
-                       0.25 - 2 * at.x, 0.25 - 2 * at.y) +
+           fmt::format(
+               "Texture \"t\" \"float\" \"checkerboard\" \"string mapping\" \"planar\" \"vector3 v1\" [2 0 0] "
+               "\"vector3 v2\" [0 2 0] \"float udelta\" {} \"float vdelta\" {} \"float tex1\" 0 \"float tex2\" 1\n",
+               0.25 - 2 * at.x, 0.25 - 2 * at.y) +
            translate(at) + "MediumInterface \"m\" \"\" Shape \"trianglemesh\" \"texture alpha\" \"t\" " +
            points({}, {{-0.9, -0.8, 0}, {0.95, -0.6, 0.1}, {0, 0.9, 0.2}});
   };

@@ -62,9 +62,10 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
     xml.comment(fmt::format("For {} variants of Mitsuba; frond renders the same with wavelengths {}",
                             kVariants[size_t(spectra.variants())], spectra.frond_wavelengths()));
     if (const Vec3d& o = origins.world; o != Vec3d{})
-      xml.comment(fmt::format("Positions are relative to ({:.10g}, {:.10g}, {:.10g}) of the scene file, because Mitsuba's "
-                              "have 32 bits",
-                              o.x, o.y, o.z));
+      xml.comment(
+          fmt::format("Positions are relative to ({:.10g}, {:.10g}, {:.10g}) of the scene file, because Mitsuba's "
+                      "have 32 bits",
+                      o.x, o.y, o.z));
     xml.comment(fmt::format("One unit of the scene file is {:g} units here, because Mitsuba offsets rays by a length",
                             context.units));
     write_view(context, xml, film, samples);

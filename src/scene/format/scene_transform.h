@@ -17,9 +17,7 @@ struct SceneTransform : Transform {
   static SceneTransform translate(const Vec3d& by) {
     return {Transform::translate(to_float(by)), PreciseTransform::translate(by)};
   }
-  static SceneTransform scale(const Vec3d& by) {
-    return {Transform::scale(to_float(by)), PreciseTransform::scale(by)};
-  }
+  static SceneTransform scale(const Vec3d& by) { return {Transform::scale(to_float(by)), PreciseTransform::scale(by)}; }
   static SceneTransform rotate(double angle_deg, const Vec3d& axis) {
     return {Transform::rotate(angle_deg, to_float(axis)), PreciseTransform::rotate(angle_deg, axis)};
   }
@@ -36,8 +34,7 @@ struct SceneTransform : Transform {
     return {static_cast<const Transform&>(a) * static_cast<const Transform&>(b), a.precise * b.precise};
   }
   friend bool operator==(const SceneTransform& a, const SceneTransform& b) {
-    return static_cast<const Transform&>(a) == static_cast<const Transform&>(b) &&
-           a.precise.rows() == b.precise.rows();
+    return static_cast<const Transform&>(a) == static_cast<const Transform&>(b) && a.precise.rows() == b.precise.rows();
   }
 };
 

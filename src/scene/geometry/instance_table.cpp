@@ -54,8 +54,9 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
   for (const NpyField& field : layout.fields) {
     if (field.name.empty() && field.type.find('V') != std::string::npos) continue;  // padding of a record
     if (field.type != kNumber && !(is_map(field) && field.type == kDouble))
-      fail(where, "{}: \"{}\" holds {}: numbers are {} (numpy.float32), those of \"transform\" may be {}", path.string(),
-           field.name.empty() ? "the array" : excerpt(field.name, path), excerpt(field.type, path), kNumber, kDouble);
+      fail(where, "{}: \"{}\" holds {}: numbers are {} (numpy.float32), those of \"transform\" may be {}",
+           path.string(), field.name.empty() ? "the array" : excerpt(field.name, path), excerpt(field.type, path),
+           kNumber, kDouble);
     if (is_map(field))
       found = true, map_offset_ = field.offset, is_double = field.type == kDouble;
     else if (field.count() == 1 && !field.name.empty())

@@ -38,8 +38,8 @@ class InstanceTable {
  public:
   explicit InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps);
   /// Reads a NumPy file: an array of shape (rows, 12) or (rows, 3, 4), or records with a field "transform" of 12
-  /// numbers and any number of scalar fields; all "<f4", but "transform" may be "<f8". Throws InputError at `where`, also
-  /// for maps without an inverse.
+  /// numbers and any number of scalar fields; all "<f4", but "transform" may be "<f8". Throws InputError at `where`,
+  /// also for maps without an inverse.
   InstanceTable(const std::filesystem::path& path, const Location& where, const ThreadPool& pool,
                 const TableOrigins& origins = {});
 

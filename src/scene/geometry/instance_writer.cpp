@@ -27,8 +27,7 @@ void append(std::vector<unsigned char>& bytes, T number) {
 InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, const std::vector<std::string>& columns,
                                MapType type)
     : file_(path), columns_(columns.size()), rows_left_(rows), type_(type) {
-  std::vector<NpyField> fields{
-      {.name = "transform", .type = type == MapType::single ? "<f4" : "<f8", .shape = {3, 4}}};
+  std::vector<NpyField> fields{{.name = "transform", .type = type == MapType::single ? "<f4" : "<f8", .shape = {3, 4}}};
   for (const std::string& name : columns) {
     const bool is_name = !name.empty() && name != "transform" && std::ranges::all_of(name, [](unsigned char c) {
       return std::isalnum(c) || c == '_' || c == '-' || c == '.';
@@ -55,9 +54,7 @@ void InstanceWriter::add(const PreciseTransform::Rows& map, std::span<const floa
   if (buffer_.size() >= kBuffer) flush();
 }
 
-void InstanceWriter::add(const AffineMap& map, std::span<const float> values) {
-  add(precise_rows(map), values);
-}
+void InstanceWriter::add(const AffineMap& map, std::span<const float> values) { add(precise_rows(map), values); }
 
 void InstanceWriter::flush() {
   file_.write({buffer_.data(), buffer_.size()});

@@ -13,8 +13,8 @@ namespace frond {
 /// Type of the numbers of an instance table's maps.
 enum class MapType : uint8_t { single, precise };
 
-/// Returns the type that keeps positions up to `largest` from the origin: 32-bit floats where their steps are below half
-/// a thousandth (up to 4,096), else 64-bit ones.
+/// Returns the type that keeps positions up to `largest` from the origin: 32-bit floats where their steps are below
+/// half a thousandth (up to 4,096), else 64-bit ones.
 constexpr MapType map_type(double largest) { return largest < 4096 ? MapType::single : MapType::precise; }
 
 /// Writes an InstanceTable's file row by row.

@@ -134,7 +134,8 @@ NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name
   }
   layout.begin = start + length;
   if (layout.row_bytes == 0 && layout.rows > 0) source.refuse("its rows are empty");
-  const size_t there = layout.row_bytes == 0 ? 0 : (std::max<uint64_t>(file_size, file.size()) - layout.begin) / layout.row_bytes;
+  const size_t there =
+      layout.row_bytes == 0 ? 0 : (std::max<uint64_t>(file_size, file.size()) - layout.begin) / layout.row_bytes;
   if (there < layout.rows)
     source.refuse(fmt::format("the file is cut short: it says {} rows and has {}", layout.rows, there));
   return layout;

@@ -59,10 +59,12 @@ Grids read_grids(const Params& p) {
   }
   const Vec3 size = grids.bounds.max - grids.bounds.min;
   const double reach = double(std::max(largest_coordinate(grids.bounds.min), largest_coordinate(grids.bounds.max)));
-  if (constexpr double kVisible = 1. / 4096; reach > kFar && float_step(reach) > kVisible * double(largest_coordinate(size)))
-    p.warn("filename", fmt::format("its grid lies up to {:.3g} units from the origin, where coordinates in 32-bit floats "
-                                   "have steps of {:g}: write it near the origin, and place it by Translate",
-                                   reach, float_step(reach)));
+  if (constexpr double kVisible = 1. / 4096;
+      reach > kFar && float_step(reach) > kVisible * double(largest_coordinate(size)))
+    p.warn("filename",
+           fmt::format("its grid lies up to {:.3g} units from the origin, where coordinates in 32-bit floats "
+                       "have steps of {:g}: write it near the origin, and place it by Translate",
+                       reach, float_step(reach)));
   return grids;
 }
 

@@ -105,9 +105,10 @@ void warn_of_steps(const Params& p, const PlyMesh& file) {
   for (const Vec3& at : file.mesh.p) bounds.add(at);
   const Vec3 size = bounds.max - bounds.min;
   if (file.step < kLargest && file.step < kLargestShare * double(largest_coordinate(size))) return;
-  p.warn("filename", fmt::format("its vertices are 32-bit floats up to {:.3g} units from the origin, where their step is "
-                                 "{:g} units; \"property double x\" (y, z) keeps such coordinates",
-                                 file.step * (1 << 23), file.step));
+  p.warn("filename",
+         fmt::format("its vertices are 32-bit floats up to {:.3g} units from the origin, where their step is "
+                     "{:g} units; \"property double x\" (y, z) keeps such coordinates",
+                     file.step * (1 << 23), file.step));
 }
 
 /// Errors in the file are reported at the parameter that names it.
@@ -165,17 +166,18 @@ constexpr Param kTriangleMesh[] = {
      .doc = "Accepted for compatibility with pbrt-v4; ignored.",
      .list = true},
     kAlphaParam};
-constexpr Param kPlyMesh[] = {{.name = "filename",
-                               .kind = ParamKind::string,
-                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which become "
-                                      "bilinear patches; .ply.gz: compressed.",
-                               .required = true},
-                              {.name = "origin",
-                               .kind = ParamKind::point3,
-                               .default_value = std::array<double, 3>{0, 0, 0},
-                               .doc = "Point that is subtracted from the file's vertices, before they are rounded to 32 "
-                                      "bits and transformed: for files in map coordinates."},
-                              kAlphaParam};
+constexpr Param kPlyMesh[] = {
+    {.name = "filename",
+     .kind = ParamKind::string,
+     .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which become "
+            "bilinear patches; .ply.gz: compressed.",
+     .required = true},
+    {.name = "origin",
+     .kind = ParamKind::point3,
+     .default_value = std::array<double, 3>{0, 0, 0},
+     .doc = "Point that is subtracted from the file's vertices, before they are rounded to 32 "
+            "bits and transformed: for files in map coordinates."},
+    kAlphaParam};
 constexpr Param kLoopSubdivision[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Vertices of the control mesh.", .list = true, .required = true},
     {.name = "indices",
