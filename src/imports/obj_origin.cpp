@@ -12,9 +12,11 @@
 namespace frond {
 namespace {
 
+/// Whether a character separates words of a line.
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-/// Takes blanks and a number from the beginning of a text.
+/// Takes blanks and a number from the beginning of a text. Returns nothing for what is no finite number, or goes on
+/// without a blank, as decimals with a comma do.
 std::optional<double> take_number(std::string_view& text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -46,11 +48,12 @@ bool for_each_vertex(std::string_view text, const Visit& visit, const Other& oth
   return true;
 }
 
-/// Coordinates of a vertex and the rest of its line, such as colours; nothing for four numbers, which are homogeneous.
+/// Coordinates of a vertex and the rest of its line, such as colours.
 struct Vertex {
   std::array<double, 3> p;
   std::string_view rest;
 };
+/// Returns nothing for four numbers, which are homogeneous coordinates.
 std::optional<Vertex> vertex_of(std::string_view line) {
   Vertex v{};
   for (double& x : v.p) {
@@ -64,6 +67,7 @@ std::optional<Vertex> vertex_of(std::string_view line) {
   return v;
 }
 
+/// Returns the middle value, and sorts in part. There is at least one.
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + ptrdiff_t(values.size() / 2);
   std::ranges::nth_element(values, middle);
@@ -72,6 +76,8 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
+/// The text is read twice: whether all vertices are far and can be moved is known at its end. Twelve digits of the
+/// differences are written: more than a 32-bit float has.
 std::array<double, 3> move_obj_to_origin(std::string& text) {
   constexpr double kFewNear = 0.01;
   std::array<std::vector<double>, 3> values;
