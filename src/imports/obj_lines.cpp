@@ -81,11 +81,4 @@ std::optional<double> number_of(std::string_view word) {
   return {};
 }
 
-std::string lower_case(std::string_view word) {
-  std::string text(word);
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return text;
-}
-
 }  // namespace frond

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "system/lower_case.h"
+
 namespace frond {
 
 /// A statement of an OBJ or MTL file.
@@ -37,6 +39,5 @@ class ObjLines {
 void split_words(std::string_view text, std::vector<std::string_view>& words);
 /// Parses a number, which takes the whole word; its decimal point may be a comma.
 std::optional<double> number_of(std::string_view word);
-std::string lower_case(std::string_view word);
 
 }  // namespace frond

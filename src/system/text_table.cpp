@@ -94,12 +94,6 @@ void check_text(std::string_view text, const Location& where) {
 
 }  // namespace
 
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return result;
-}
-
 std::string name_without_unit(std::string_view name) {
   return lower_case(trimmed(name.substr(0, std::min(name.find_first_of("([/"), name.size()))));
 }

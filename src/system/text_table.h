@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "system/lower_case.h"
 
 namespace frond {
 
@@ -78,8 +79,5 @@ class TextTable {
 /// Returns the name of a column in lower case, without a unit in brackets or after a slash: "Reflectance (%)" is
 /// "reflectance".
 std::string name_without_unit(std::string_view name);
-
-/// Returns the text in lower case (ASCII).
-std::string lower_case(std::string_view text);
 
 }  // namespace frond
