@@ -14,7 +14,8 @@ SceneDescription moved(const Transform& motion) {
     const AffineMap start = (*d.instances.maps)[i];
     Transform::RowsDouble rows;
     for (size_t k = 0; k < 3; ++k) std::copy(start.rows[k].begin(), start.rows[k].end(), rows[k].begin());
-    d.instances.moving.push_back({d.instances.objects[i], start, {(Transform(rows) * motion).rows()}, {}});
+    const AffineMap end{(Transform(rows) * motion).rows()};
+    d.instances.moving.push_back({d.instances.objects[i], start, end, {precise_rows(start), precise_rows(end)}, {}});
   }
   d.instances.maps->clear();
   d.instances.objects.clear();

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/messages/log.h"
-#include "core/parallel.h"
 #include "core/messages/problems.h"
+#include "core/parallel.h"
 #include "scene/geometry/geometry.h"
 #include "scene/resolver.h"
 

@@ -11,8 +11,8 @@
 namespace frond {
 
 /// Reads a scene file in pbrt-v4's format with all included files; "-" is standard input. After an error, the parser
-/// continues at the next directive and throws all errors at the end (core/messages/problems.h), with file, line and column.
-/// Files may be compressed (gzip).
+/// continues at the next directive and throws all errors at the end (core/messages/problems.h), with file, line and
+/// column. Files may be compressed (gzip).
 SceneDescription parse_scene(const std::filesystem::path& path, const Log& log);
 
 /// Reads a scene from one or several consecutive files, as pbrt does. Adds errors to `problems`, and returns what could
