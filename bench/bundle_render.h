@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "render/plugins.h"
 #include "render/render_loop.h"
 #include "scene/format/parser.h"

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "render/plugins.h"
 #include "render/render_loop.h"

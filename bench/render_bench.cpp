@@ -5,7 +5,7 @@
 #include <bit>
 #include <ctime>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "render/plugins.h"
 #include "render/render_loop.h"
 #include "scene/format/parser.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "instruments/errors/render_error.h"
 #include "instruments/errors/statistics.h"
 #include "study/compare/film_images.h"

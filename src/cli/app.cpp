@@ -10,7 +10,7 @@
 
 #include "cli/pbrt_options.h"
 #include "core/error.h"
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "jobs/record/command_line.h"
 #include "jobs/record/pbrt_options.h"
 #include "report/text_output.h"

@@ -4,7 +4,7 @@
 
 #include "core/arena.h"
 #include "core/bsdf.h"
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "core/plugin.h"
 #include "core/shared_work.h"

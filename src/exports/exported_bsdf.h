@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "core/material.h"
-#include "core/messages/log.h"
 #include "core/parallel.h"
 
 namespace frond {

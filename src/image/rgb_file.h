@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/params.h"
 #include "image/image_file.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "image/image_file.h"
 #include "imports/imported_scene.h"
 

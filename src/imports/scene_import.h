@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "imports/double_sheets.h"
 #include "imports/plant_materials.h"
 

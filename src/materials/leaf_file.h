@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/table/leaf_file.h"
 #include "materials/leaf_params.h"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/fit/measured_table.h"
 
 namespace frond {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/params.h"
 #include "leaf/table/table.h"
 

@@ -18,7 +18,7 @@ void divide_by_alpha(Image& image, size_t alpha, bool eight_bit) {
   const size_t channels = image.channels.size();
   for (size_t i = 0; i < image.pixels.size(); i += channels) {
     const float a = image.pixels[i + alpha];
-    if (!(a > 0)) continue;
+    if (!(a > 0)) continue;  // the colour is not in the file
     for (size_t c = 0; c < channels; ++c) {
       float& v = image.pixels[i + c];
       if (c != alpha) v = eight_bit ? std::round(std::min(v / a, 1.f) * kWhite) / kWhite : v / a;

@@ -5,10 +5,10 @@
 
 #include "core/error.h"
 #include "core/stop.h"
-#include "spectra/spectrum_points.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_label.h"
 #include "spectra/wavelengths/response_sampler.h"
+#include "spectra/wavelengths/spectrum_points.h"
 
 namespace frond {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "spectra/spectrum_points.h"
+#include "spectra/wavelengths/spectrum_points.h"
 
 namespace frond {
 namespace {

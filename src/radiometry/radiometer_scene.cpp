@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
 #include "scene/scene_options.h"

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <thread>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "render/parts/part.h"
 #include "render/progress.h"
 

@@ -4,7 +4,7 @@
 #include <condition_variable>
 #include <thread>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "render/film/image_format.h"
 
 namespace frond {

@@ -1,6 +1,6 @@
 #include "render/measured_material.h"
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "scene/resolver.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "core/material.h"
-#include "core/messages/log.h"
 #include "instruments/beam.h"
 #include "scene/format/description.h"
 #include "scene/registry.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "core/messages/log.h"
+#include "core/log.h"
 
 namespace frond {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "render/parts/part.h"
 #include "render/render_loop.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/format/description.h"
 #include "scene/registry.h"
 

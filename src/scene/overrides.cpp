@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"

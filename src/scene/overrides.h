@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/format/description.h"
 #include "scene/format/plugin_text.h"
 #include "scene/registry.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "scene/format/description.h"
 #include "scene/format/unsupported.h"

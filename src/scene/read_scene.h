@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "scene/format/description.h"
 #include "scene/format/unsupported.h"

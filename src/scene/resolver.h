@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/params.h"
 #include "core/shared_work.h"
 #include "core/wavelengths.h"

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "core/world.h"
 #include "scene/format/description.h"

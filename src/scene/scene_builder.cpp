@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "core/stop.h"
 #include "scene/format/plugin_text.h"

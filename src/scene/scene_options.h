@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/format/description.h"
 
 namespace frond {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 
 namespace frond {
 namespace {

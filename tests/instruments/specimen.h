@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "instruments/rays.h"
 #include "instruments/sweep.h"
 #include "materials/registry.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "tests/leaf/statistics.h"
 #include "tests/support/bind.h"
 #include "tests/support/render_text.h"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/read_scene.h"
 #include "tests/support/render_text.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "instruments/conformance/material_conformance.h"
 #include "instruments/given_wavelengths.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/table/mode_table_cache.h"
 #include "leaf/tissue/specimens.h"
 #include "tests/support/input_error.h"

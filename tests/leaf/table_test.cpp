@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/table/cache_file.h"
 #include "leaf/table/lookup.h"
 #include "leaf/table/table_cache.h"

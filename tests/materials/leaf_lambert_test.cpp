@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/solve/solver.h"
 #include "leaf/table/table.h"
 #include "leaf/tissue/specimens.h"

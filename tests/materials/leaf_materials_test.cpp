@@ -4,7 +4,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/solve/solver.h"
 #include "leaf/tissue/absorption.h"
 #include "leaf/tissue/specimens.h"

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/log.h"
 #include "core/material.h"
-#include "core/messages/log.h"
 #include "materials/registry.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/registry.h"

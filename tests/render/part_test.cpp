@@ -8,7 +8,7 @@
 #include <iterator>
 #include <random>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "image/image_file.h"
 #include "render/image_output.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "image/image_file.h"
 #include "integrators/registry.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "scene/format/parser.h"
 #include "tests/support/input_error.h"

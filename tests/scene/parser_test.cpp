@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "render/plugins.h"
 #include "scene/format/directives.h"

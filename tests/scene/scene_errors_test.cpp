@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"

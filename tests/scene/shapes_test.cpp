@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"

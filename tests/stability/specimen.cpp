@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "instruments/goniophotometer.h"
 #include "instruments/spectrophotometer.h"
 

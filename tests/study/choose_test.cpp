@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "image/image_file.h"
 #include "render/plugins.h"
 #include "scene/format/parser.h"

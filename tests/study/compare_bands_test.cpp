@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "spectra/cie.h"
 #include "study/compare/channels.h"
 #include "study/compare/study.h"

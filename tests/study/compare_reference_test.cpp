@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "study/compare/reference_store.h"
 #include "tests/study/compare_scene.h"
 #include "tests/support/input_error.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "render/render_loop.h"

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -1,4 +1,4 @@
-#include "core/messages/log.h"
+#include "core/log.h"
 
 #include <cstdio>
 

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "exports/mitsuba/folder.h"
 #include "exports/mitsuba/spectra.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 
 namespace frond {

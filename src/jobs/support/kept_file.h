@@ -5,7 +5,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "jobs/record/arguments.h"
 #include "render/checkpoint.h"
 #include "system/file_uses.h"

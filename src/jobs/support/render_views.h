@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "jobs/record/arguments.h"
 #include "jobs/support/terminal_viewer.h"
 #include "render/live_view.h"

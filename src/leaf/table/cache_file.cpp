@@ -1,6 +1,6 @@
 #include "leaf/table/cache_file.h"
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "system/atomic_file.h"
 #include "system/cache_limit.h"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/solve/solver.h"
 #include "leaf/table/cache_file.h"
 #include "leaf/table/mode_table_file.h"

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "leaf/table/mode_table.h"
 
 namespace frond::leaf {

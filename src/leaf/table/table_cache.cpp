@@ -5,7 +5,7 @@
 #include <bit>
 #include <chrono>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "leaf/table/cache_file.h"
 #include "leaf/table/table_file.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/format/known_names.h"
 #include "scene/format/plugin_text.h"
 #include "scene/math/motion.h"

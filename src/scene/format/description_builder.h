@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "scene/format/description.h"
 

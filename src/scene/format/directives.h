@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/format/description_builder.h"
 #include "scene/format/parameter_list.h"
 #include "scene/format/tokenizer.h"

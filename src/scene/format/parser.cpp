@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "scene/format/description_builder.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/messages/problems.h"
 #include "scene/format/description.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/messages/log.h"
+#include "core/log.h"
 
 namespace frond {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spectra/spectrum_points.h"
+#include "spectra/wavelengths/spectrum_points.h"
 
 namespace frond {
 namespace {

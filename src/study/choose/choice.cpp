@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "study/choose/choice_report.h"
 #include "study/choose/screening.h"
 

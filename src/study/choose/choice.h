@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "study/choose/pilot.h"
 
 namespace frond::choose {

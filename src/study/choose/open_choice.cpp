@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <exception>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/overrides.h"
 #include "scene/resolver.h"
 #include "scene/scene_options.h"

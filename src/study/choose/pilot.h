@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "instruments/errors/convergence.h"
 #include "instruments/errors/paired_difference.h"
 #include "render/session.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "instruments/errors/flip.h"
 #include "study/compare/film_images.h"

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <tuple>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "render/parts/part_file.h"
 #include "system/atomic_file.h"
 #include "system/cache_limit.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "study/compare/paired_render.h"
 
 namespace frond::compare {

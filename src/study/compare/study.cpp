@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/messages/log.h"
+#include "core/log.h"
 #include "scene/resolver.h"
 #include "study/paired_films.h"
 

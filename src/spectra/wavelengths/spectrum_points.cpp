@@ -1,4 +1,4 @@
-#include "spectra/spectrum_points.h"
+#include "spectra/wavelengths/spectrum_points.h"
 
 #include <algorithm>
 #include <cmath>
