@@ -70,7 +70,7 @@ def _text_words(param, name, value):
     if param["type"] in _NUMERIC:
         separator, unit = _NUMERIC[param["type"]]
         value = in_unit(value, name, unit)
-        if not isinstance(scalar(value), (str, bytes, os.PathLike)) and not _is_text_list(value):
+        if not isinstance(scalar(value), str) and not _is_text_list(value):
             return [separator.join(map(_number_text, numbers(value, name, unit)))]
     value = scalar(value)
     if value is True and param["implied"]:

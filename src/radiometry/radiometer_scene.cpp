@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/log.h"
@@ -53,6 +54,15 @@ std::optional<size_t> largest_flat_surface(const Geometry& geometry) {
   return b.max.z - b.min.z <= kFlat * std::max(b.max.x - b.min.x, b.max.y - b.min.y) ? largest : std::nullopt;
 }
 
+/// Returns bounds with few digits, which contain the given ones.
+FileBounds with_few_digits(const FileBounds& b) {
+  const double size = std::max({b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z});
+  const double per_unit = std::pow(10, 4 - std::floor(std::log10(size)));  // steps of 1e-4 of the size
+  const auto down = [per_unit](double x) { return std::floor(x * per_unit) / per_unit; };
+  const auto up = [per_unit](double x) { return std::ceil(x * per_unit) / per_unit; };
+  return {{down(b.min.x), down(b.min.y), down(b.min.z)}, {up(b.max.x), up(b.max.y), up(b.max.z)}};
+}
+
 /// Warns if all but the ground covers less than half of the target, which is the whole scene.
 void warn_of_empty_ground(const Scene& scene, const Target& target, const Log& log) {
   constexpr double kMostly = 0.5;
@@ -63,9 +73,9 @@ void warn_of_empty_ground(const Scene& scene, const Target& target, const Log& l
   if (rest.is_empty() || geometry.bounds_of(*ground).max.z > rest.max.z) return;
   const double share = horizontal_area(rest) / ((target.x1 - target.x0) * (target.y1 - target.y0));
   if (!(share > 0 && share < kMostly)) return;
-  const FileBounds better = in_file(rest, scene);
+  const FileBounds better = with_few_digits(in_file(rest, scene));
   log.warn({}, fmt::format("the target is the whole scene, by default, and all but the ground covers {:.2g} % of it: "
-                           "--target {:.8g},{:.8g},{:.8g},{:.8g},{:.8g} measures that",
+                           "--target {:.12g},{:.12g},{:.12g},{:.12g},{:.12g} measures that",
                            100 * share, better.min.x, better.max.x, better.min.y, better.max.y, better.max.z));
 }
 

@@ -21,6 +21,8 @@ class TextScene {
  public:
   explicit TextScene(const std::string& world) : scene_(description(world), registry_, pool_, silent_log()) {}
   const World& world() const { return scene_; }
+  /// A point of the text's world in the rendered one, whose origin is among the shapes if these are far away.
+  Vec3 rendered(const Vec3d& p) const { return to_float(p - scene_.origin()); }
 
  private:
   static SceneDescription description(const std::string& world) {
@@ -166,7 +168,7 @@ Tally stay_in_random_boxes(unsigned first, unsigned count) {
     const TextScene scene(box.text);
     const Vec3d middle = box.middle();
     for (int path = 0; path < 16; ++path) {
-      Ray ray{to_float(middle), to_float(box.direction(normalize(Vec3d{1, 2, 3})))};
+      Ray ray{scene.rendered(middle), to_float(box.direction(normalize(Vec3d{1, 2, 3})))};
       for (int bounce = 0; bounce < 64; ++bounce) {
         SurfacePoint point;
         ++tally.rays;
@@ -194,7 +196,7 @@ Tally leave_random_planes(unsigned first, unsigned count) {
       const Vec3d d = plane.direction(n);
       const double away = plane.distance();
       SurfacePoint point;
-      if (!scene.world().intersect({to_float(p + d * away), to_float(-d)}, 1, point)) continue;
+      if (!scene.world().intersect({scene.rendered(p + d * away), to_float(-d)}, 1, point)) continue;
       for (int k = 0; k < 16; ++k) {
         const Vec3 out = to_float(plane.direction(k % 2 ? n : -n));
         SurfacePoint other;
@@ -235,7 +237,7 @@ TEST(SelfIntersection, LargePlanesStayApart) {
         object + "AttributeBegin ObjectBegin \"p\" Rotate 20 0 0 1 ObjectInstance \"o\" ObjectEnd AttributeEnd\n" +
             "Translate 1000 2000 0 Rotate 30 0 0 1 ObjectInstance \"p\"\n"}) {
     const TextScene scene(text);
-    const Vec3 middle = text.find("Translate") == std::string::npos ? Vec3{} : Vec3{1000, 2000, 0};
+    const Vec3 middle = scene.rendered(text.find("Translate") == std::string::npos ? Vec3d{} : Vec3d{1000, 2000, 0});
     for (const Vec3& d : {Vec3{0, 0, 1}, Vec3{0.1f, 0.2f, 1}}) {
       SurfacePoint lower, upper;
       ASSERT_TRUE(scene.world().intersect({middle + Vec3{20, 30, 0.0005f}, -d}, 1, lower)) << text;

@@ -97,10 +97,9 @@ class Bands final : public WavelengthStrategy {
         nm_.push_back(static_cast<float>(band.nm));
       else
         samplers_.emplace_back(band.response, where);
+    check_single_wavelengths(where);
     listed_nm_ = nm_;
     std::ranges::sort(listed_nm_);
-    if (const auto twice = std::ranges::adjacent_find(listed_nm_); twice != listed_nm_.end())
-      fail(where, "there are two bands at {:.8g} nm", *twice);
     find_range();
   }
 
@@ -145,6 +144,17 @@ class Bands final : public WavelengthStrategy {
   }
 
  private:
+  /// Bands without a response are named after their wavelength, which must therefore be unique.
+  void check_single_wavelengths(const Location& where) const {
+    constexpr double kLeast_nm = 1e-6;
+    std::vector<double> nm;
+    for (const Band& band : bands_)
+      if (band.response.empty()) nm.push_back(band.nm);
+    std::ranges::sort(nm);
+    for (size_t i = 1; i < nm.size(); ++i)
+      if (nm[i] - nm[i - 1] < kLeast_nm) fail(where, "there are two bands at {:.8g} nm", nm[i]);
+  }
+
   void read_responses(const std::vector<std::filesystem::path>& files, const Params& p) {
     const Location where = p.where("responses");
     for (const auto& file : files) {
