@@ -8,6 +8,7 @@
 #include "image/image_file.h"
 #include "jobs/submit/engine.h"
 #include "jobs/support/render_task.h"
+#include "scene/format/words.h"
 #include "system/child_process.h"
 #include "system/file_bytes.h"
 #include "system/new_files.h"
@@ -156,7 +157,8 @@ std::vector<std::pair<std::string, std::string>> values_of(const JobRun& run, co
           {"@LAST_TASK@", std::to_string(tasks - 1)}};
 }
 
-/// Returns the end of what an engine has printed to a file, for an error message; empty if it has printed nothing.
+/// Returns the last lines that an engine has printed to a file, for an error message, which is one line; empty if it has
+/// printed nothing.
 std::string end_of(const fs::path& printed) {
   constexpr int kMostLines = 10;
   std::string text = read_file_bytes(printed, {});
@@ -164,8 +166,8 @@ std::string end_of(const fs::path& printed) {
   if (text.empty()) return "";
   size_t begin = text.size();
   for (int i = 0; i < kMostLines && begin != std::string::npos && begin > 0; ++i) begin = text.rfind('\n', begin - 1);
-  return fmt::format("; the end of \"{}\":\n{}", printed.string(),
-                     begin == std::string::npos || begin == 0 ? text : text.substr(begin + 1));
+  if (begin != std::string::npos && begin > 0) text.erase(0, begin + 1);
+  return fmt::format("; the end of \"{}\": {}", printed.string(), fmt::join(split(text, '\n'), " | "));
 }
 
 /// Starts the job. Returns what a queue has answered, or nothing if the engine has run the job and printed as it did;

@@ -39,7 +39,6 @@ TEST(MeasureJobs, RefuseWithTheSameWordsInBothFrontEnds) {
   struct {
     std::string job, name, value;
   } const kCases[] = {{"spectrophotometer", "angles", "181"},
-                      {"spectrophotometer", "wavelengths", "300"},
                       {"spectrophotometer", "rays", "1"},
                       {"spectrophotometer", "se", "0"},
                       {"goniophotometer", "map-scale", "square"},

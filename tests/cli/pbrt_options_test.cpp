@@ -152,7 +152,7 @@ TEST_F(PbrtOptions, StrictTellsWarningsBesideErrors) {
 
 TEST_F(PbrtOptions, RadiometersAndComparisonsReadScenesAsRenderDoes) {
   for (const char* command : {"brf", "flux"}) {
-    std::vector<std::string> words{command, path("other.pbrt"), "--paths", "64", "--integrator", "path"};
+    std::vector<std::string> words{command, path("other.pbrt"), "--paths", "64"};
     EXPECT_THAT(frond_command(words).err, HasSubstr("with --ignore-unsupported=materials")) << command;
     words.emplace_back("--ignore-unsupported");
     EXPECT_THAT(frond_command(words).err, Not(HasSubstr("with --ignore-unsupported=materials"))) << command;
