@@ -39,7 +39,7 @@ constexpr JobParam kParams[] = {
              {.choices = kBy, .decides = true}),
     JobParam("irradiance", text,
              "Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name "
-             "of a spectrum, an .spd file, or scene: that of the scene's lights. By default bands have that of the "
+             "of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the "
              "scene, and photons, which need a unit, solar-am1.5-global.",
              {.type = "SPECTRUM", .unit = "W/(m2 nm)", .decides = true}),
     kSwapParam,

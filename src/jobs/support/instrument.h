@@ -25,8 +25,8 @@ inline constexpr JobParam kInstrumentWavelengthsParam(
     {.type = "WAVELENGTHS", .unit = "nm", .aliases = "wavelength", .decides = true, .required = true});
 inline constexpr JobParam kIlluminantParam(
     "illuminant", ArgumentKind::text,
-    "Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or an .spd "
-    "file. By default that of equal energy.",
+    "Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or a "
+    "spectrum file. By default that of equal energy.",
     {.type = "SPECTRUM", .default_value = "stdillum-E", .decides = true});
 inline constexpr JobParam kRenderedParam("rendered", ArgumentKind::flag,
                                          "Measure what an image shows: light arrives along wi and the detector is at "
