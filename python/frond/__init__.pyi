@@ -176,7 +176,7 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
-    irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, an .spd file, or scene: that of the scene's lights. By default bands have that of the scene, and photons, which need a unit, solar-am1.5-global. Unit: W/(m2 nm).
+    irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene, and photons, which need a unit, solar-am1.5-global. Unit: W/(m2 nm).
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
@@ -193,7 +193,7 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.Path
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
-    illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or an .spd file. By default that of equal energy. Default: stdillum-E.
+    illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or a spectrum file. By default that of equal energy. Default: stdillum-E.
     rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9.
     se: Stop when the standard errors of R, T and A are at most this. Range: above 0.
     rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
@@ -214,7 +214,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
-    illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or an .spd file. By default that of equal energy. Default: stdillum-E.
+    illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or a spectrum file. By default that of equal energy. Default: stdillum-E.
     rays: Number of rays for each measurement. Default: 1e6.
     patches: THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere. Default: 20x40.
     integrate: Integrate f over each patch, without noise, if the material evaluates f exactly and the light is of one wavelength; otherwise use rays.
