@@ -199,7 +199,7 @@ def test_the_scene_file_itself_is_not_read_again(folder):
 
 
 def test_a_file_that_has_changed_is_named(folder):
-    """Instance tables, meshes and spectra are read again: another content would be another scene, without a word."""
+    """Instance tables, meshes and spectra are read again: other content would be another scene, without a message."""
     scene = frond.load("canopy.pbrt")
     Path("soil.spd").write_text("300 0.5\n2500 0.5\n\n")
     with pytest.raises(frond.InputError, match='soil.spd" has changed since the scene "canopy.pbrt" was loaded: load it again'):

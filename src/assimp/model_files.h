@@ -12,7 +12,7 @@
 
 namespace frond {
 
-/// Limits of this process, which reads files of strangers. Each file that is read raises those of memory and time in
+/// Limits of this process, which reads untrusted files. Each file that is read raises those of memory and time in
 /// proportion to its size. Memory: 1 GB and 128 times the files, at most the machine's; processor time: 60 s and 2 s
 /// for each MB; each file that is read: 4 GB; output: 4 times the memory. No file can be written.
 class ProcessLimits {

@@ -127,12 +127,4 @@ void allow_reading(const fs::path& output) {
   });
 }
 
-void check_unread(const fs::path& output) {
-  const auto identity = identity_of(output);
-  for_jobs([&](const Uses& uses) {
-    if (const std::string* input = replaced_input(uses, output, identity))
-      fail({}, "\"{}\" would replace the input \"{}\": write to another folder", output.string(), *input);
-  });
-}
-
 }  // namespace frond

@@ -48,7 +48,5 @@ class PlannedOutput {
 void note_read(const std::filesystem::path& path, const Location& where);
 /// Allows reading a planned output: a job resumes from its own result.
 void allow_reading(const std::filesystem::path& output);
-/// Throws InputError if the running job has read the file that is to be replaced.
-void check_unread(const std::filesystem::path& output);
 
 }  // namespace frond
