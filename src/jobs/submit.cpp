@@ -157,8 +157,8 @@ std::vector<std::pair<std::string, std::string>> values_of(const JobRun& run, co
           {"@LAST_TASK@", std::to_string(tasks - 1)}};
 }
 
-/// Returns the last lines that an engine has printed to a file, for an error message, which is one line; empty if it has
-/// printed nothing.
+/// Returns the last lines that an engine has printed to a file, for an error message, which is one line; empty if it
+/// has printed nothing.
 std::string end_of(const fs::path& printed) {
   constexpr int kMostLines = 10;
   std::string text = read_file_bytes(printed, {});

@@ -35,8 +35,8 @@ void check_tiles(const EncodedImage& file, int64_t tile_width, int64_t tile_heig
 /// of image_format_of. Damage that they report themselves is left to them.
 void check_header(const EncodedImage& file, std::string_view format);
 
-/// Returns the first value of an entry of a TIFF's first directory, if it stands in the entry; nothing where there is
-/// no such entry.
+/// Returns the first value of an entry of a TIFF's first directory, if the entry itself contains it; nullopt if there
+/// is no such entry.
 std::optional<uint64_t> tiff_number(std::string_view bytes, uint16_t tag);
 
 /// Returns whether the text is UTF-8 (RFC 3629).

@@ -41,7 +41,7 @@ class TextTable {
   size_t columns() const { return columns_; }
   /// Whether white space separates the fields.
   bool is_blank_separated() const { return separator_ == ' '; }
-  /// Number of rows that `next` has not read yet.
+  /// Number of rows after the current one.
   size_t rows_left() const;
 
   /// Reads the next row. Returns false at the end.
