@@ -21,7 +21,7 @@ from ._errors import InputError
 from ._frond import version as __version__
 from ._session import Image, Scene, Session, default_session, load, loads, read_image, write_image
 from ._jobs import Result, run
-from ._measure import (Fit, brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
+from ._measure import (Fit, bench, brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
                        spectrophotometer)
 from ._bsdf import Bsdf, FlatBsdf, LeafTable, bsdf, leaf_table
 

@@ -20,6 +20,25 @@ def material_text(material):
     return ",".join(checked_text(scalar(part), "material") for part in texts(material, "material"))
 
 
+def _registered(bsdf, session):
+    """Returns the name of an object of `frond.Bsdf` as a material of the session; registers it at the first use. The name is that
+    of its class, so that equal runs have equal seeds."""
+    session = checked_session(session)
+    found = session._bsdfs.get(id(bsdf))
+    if found is None:
+        of_class, taken, i = re.sub(r"[^\w.-]", "_", type(bsdf).__name__), names(session=session), 1
+        while (found := of_class if i == 1 else f"{of_class}-{i}") in taken:
+            i += 1
+        register_material(found, bsdf, session=session)
+    return found
+
+
+def _of_bsdf(material, session):
+    """Returns a material as text; an object of `frond.Bsdf` is registered."""
+    from ._bsdf import Bsdf
+    return _registered(material, session) if isinstance(material, Bsdf) else material_text(material)
+
+
 def bands_of(values):
     """Returns wavelengths in nm as floats. Raises TypeError or ValueError."""
     return reals(values, "wavelengths", "nm")
@@ -136,18 +155,26 @@ def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **opti
 
 @_with_keywords_of("conform")
 def conform(material, *, session=None, **options):
-    """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary:
-    "laws" {law: verdict}, "findings" a table, "all_hold" True if no law is broken."""
-    from ._bsdf import Bsdf
-    if isinstance(material, Bsdf):
-        name = f"{type(material).__name__}-{id(material):x}"
-        if name not in names(session=session):
-            register_material(name, material, session=session)
-        material = name
-    result = run("conform", material=material_text(material), session=session, **options)
+    """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary with
+    the facts of the command's JSON and "laws" {law: row}, "findings" a table, "text" the report. "all_hold" is True if no law was
+    found broken, "verdict" says at which parameters. report["laws"]["energy"]: the "largest" directional albedo with its
+    "largest_se" and where it was found; "detectable", the excess over 1 that would have been found there with a probability of
+    95 %. report["detectable_factor"]: the factor on f that would have been found."""
+    result = run("conform", material=_of_bsdf(material, session), session=session, **options)
     laws = result.columns["laws"]
     rows = [dict(zip(laws, row)) for row in zip(*laws.values())]
-    return {**result.facts, "laws": {row["law"]: row for row in rows}, "findings": result.tables["findings"]}
+    return {**result.facts, "laws": {row["law"]: row for row in rows}, "findings": result.tables["findings"], "text": result.text}
+
+
+@_with_keywords_of("bench", "Result")
+def bench(material, with_=None, *, session=None, **options):
+    """Measures the cost of BSDFs. material, with_: text, or objects of `frond.Bsdf`."""
+    from ._bsdf import Bsdf
+    if isinstance(with_, Bsdf):
+        with_ = [with_]
+    if isinstance(with_, (list, tuple)):
+        with_ = [_of_bsdf(one, session) if isinstance(one, Bsdf) else one for one in with_]
+    return FUNCTIONS["bench"](_of_bsdf(material, session), with_, session=session, **options)
 
 
 def register_material(name, bsdf, *, session=None):
@@ -158,7 +185,9 @@ def register_material(name, bsdf, *, session=None):
         raise TypeError(f"bsdf: an object of a subclass of frond.Bsdf is needed, not {named(bsdf)}")
     if not re.fullmatch(r"[\w.-]+", checked_text(name, "name")):
         raise ValueError(f"name: letters, digits, _ - and . are needed, not {name!r}")
-    _frond.register_material(_session_of(session), name, (type(bsdf).__doc__ or name).strip().split("\n")[0], bsdf)
+    session = checked_session(session)
+    _frond.register_material(session._session, name, (type(bsdf).__doc__ or name).strip().split("\n")[0], bsdf)
+    session._bsdfs.setdefault(id(bsdf), name)  # the session keeps the object, so that its id remains its own
 
 
 class Fit:

@@ -82,6 +82,7 @@ class Session:
         if isinstance(plugins, (str, bytes, os.PathLike)):
             plugins = [plugins]
         self._session = _frond.Session(threads, folder, [path_text(p, "plugins") for p in texts(plugins, "plugins")])
+        self._bsdfs = {}  # names of materials written in Python, by id
 
     @property
     def threads(self):

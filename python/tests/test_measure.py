@@ -74,6 +74,51 @@ def test_laws_hold_a_bsdf_in_python(bsdf, broken):
     assert report["all_hold"] == (not broken)
 
 
+class FivePercentTooBright(frond.Bsdf):
+    def f(self, wo, wi, nm):
+        return 1.05 / math.pi if wo[2] * wi[2] > 0 else 0.0
+
+
+class HalfOfThat(frond.Bsdf):
+    def f(self, wo, wi, nm):
+        return 0.525 / math.pi if wo[2] * wi[2] > 0 else 0.0
+
+
+def test_conform_finds_five_percent_at_its_defaults():
+    report = frond.conform(FivePercentTooBright())
+    assert not report["all_hold"] and report["verdict"] == "Broken: energy."
+    energy = report["laws"]["energy"]
+    assert energy["verdict"] == "broken" and abs(energy["largest"] - 1.05) < 0.05 and energy["detectable"] <= 0.05
+
+
+def test_conform_states_its_power_and_its_parameters():
+    report = frond.conform(HalfOfThat(), samples=2000)
+    assert report["all_hold"]
+    assert report["verdict"] == "No law was found broken, at the defaults only: there is no parameter with a range."
+    energy = report["laws"]["energy"]
+    assert energy["quantity"] == "directional albedo" and abs(energy["largest"] - 0.525) < 0.1 and energy["largest_se"] > 0
+    assert energy["largest_parameters"] == "defaults" and energy["largest_wavelength_nm"] in (608, 551, 455)
+    assert energy["detectable"] > 0.05 and 1.8 < report["detectable_factor"] < 3
+    assert "f too large everywhere by a factor of" in report["text"]
+    assert {"value", "detectable", "parameters", "theta_deg"} <= set(report["findings"])
+
+
+def test_bench_takes_bsdfs_in_python():
+    table = frond.bench(White(), [HalfOfThat(), "diffuse"], angles=30, lanes=1, wavelengths=551, repetitions=1, min_time=0.001, samples=1000).tables["times"]
+    assert list(table["material"]) == ["White", "HalfOfThat", "diffuse"] and min(table["hit_ns"]) > 0
+
+
+def test_the_name_of_a_bsdf_is_that_of_its_class():
+    session = frond.Session(cache=False)
+    one, other = White(), White()
+    reports = [frond.conform(bsdf, samples=1000, angles=0, session=session) for bsdf in (one, other, one)]
+    assert [r["material"] for r in reports] == ["White", "White-2", "White"]
+    assert reports[0]["findings"].equals(reports[2]["findings"])
+    named = White()
+    frond.register_material("paper", named, session=session)
+    assert frond.conform(named, samples=1000, angles=0, session=session)["material"] == "paper"
+
+
 def test_a_bsdf_in_python_is_a_material(scene_text):
     session = frond.Session(threads=2, cache=False)
     frond.register_material("white", White(), session=session)

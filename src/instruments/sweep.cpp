@@ -32,7 +32,10 @@ ParsedParam given(const Param& p, std::string type, decltype(ParsedParam::values
   return result;
 }
 
-ParsedParam level(const Param& p, double value) {
+/// A spectrum at the fraction u of the range; by default of 0 to 1.
+ParsedParam level(const Param& p, double u) {
+  const Interval range{std::max(p.range.min, 0.0), std::min(p.range.max, 1.0)};
+  const double value = std::lerp(range.min, range.max, std::clamp(u, 0.0, 1.0));
   return given(p, "spectrum", std::vector<double>{360, value, 2500, value});
 }
 
@@ -71,12 +74,19 @@ std::vector<ParsedParam> at(const Param& p, const Interval& range, double u) {
     case ParamKind::illuminant:
     case ParamKind::albedo:
     case ParamKind::spectrum_texture:
-      return {level(p, std::clamp(u, 0.0, 1.0))};
     case ParamKind::unbounded:
       return {level(p, u)};
     default:
       return {};
   }
+}
+
+bool is_share(const Param& p) { return p.kind == ParamKind::albedo || p.kind == ParamKind::spectrum_texture; }
+
+/// Whether a sweep varies the parameter to this end of its range, 0 or 1.
+bool is_swept_to(const Param& p, double end, const SweepOptions& options) {
+  if (at(p, inside(p), 0.5).empty()) return false;
+  return options.infinite_ends || is_share(p) || std::isfinite(end == 0 ? p.range.min : p.range.max);
 }
 
 /// Value of a required parameter that nothing else gives.
@@ -88,6 +98,8 @@ ParsedParam stand_in(const Param& p) {
 }
 
 std::string text(const ParsedParam& p) {
+  // A spectrum of `level`, wavelengths and values in turn, by its one value.
+  if (p.type == "spectrum") return fmt::format("{} = {}", p.name, std::get<std::vector<double>>(p.values)[1]);
   return std::visit([&](const auto& values) { return fmt::format("{} = {}", p.name, fmt::join(values, " ")); },
                     p.values);
 }
@@ -109,7 +121,8 @@ class Sweep {
     for (const Param* p : swept_) {
       for (const ParsedParam& choice : choices(*p)) add(text(choice), {choice});
       for (const double end : {0.0, 1.0})
-        for (const ParsedParam& value : at(*p, ends(*p), end)) add(text(value), {value});
+        if (is_swept_to(*p, end, options))
+          for (const ParsedParam& value : at(*p, ends(*p), end)) add(text(value), {value});
     }
     for (int i = 0; i < options.random_corners; ++i)
       add_random(fmt::format("corner {}", i), ends, [this] { return numbers_.uniform() < 0.5f ? 0.0 : 1.0; });
@@ -176,6 +189,19 @@ class GivenSpectrum final : public Spectrum {
 
 std::vector<ParameterSet> parameter_sweep(const PluginInfo& info, const SweepOptions& options) {
   return Sweep(info, options).run(options);
+}
+
+SweptParams swept_params(const PluginInfo& info, const SweepOptions& options) {
+  SweptParams result;
+  for (const Param& p : info.params) {
+    if (std::ranges::find(options.pinned, p.name, &ParsedParam::name) != options.pinned.end()) continue;
+    const bool low = is_swept_to(p, 0, options), high = is_swept_to(p, 1, options), chosen = !choices(p).empty();
+    const std::string name(p.name);
+    if (low || high || chosen) result.varied.push_back(name);
+    if (!chosen && !(low && high))
+      result.unvaried.push_back(low ? name + " (no upper end)" : high ? name + " (no lower end)" : name);
+  }
+  return result;
 }
 
 std::shared_ptr<const FloatTexture> PlainResolver::float_texture(const std::string& name, const Location& where) {

@@ -21,6 +21,7 @@ struct SweepOptions {
   std::vector<ParsedParam> pinned = {};  ///< given in every set and not swept, if the plug-in declares them
   int random_corners = 4;                ///< sets with every parameter at one end of its range
   int random_points = 4;                 ///< sets with every parameter inside its range
+  bool infinite_ends = true;             ///< vary parameters to 1000 in place of an infinite end of their range
   uint64_t seed = 1;
 };
 
@@ -29,6 +30,13 @@ struct SweepOptions {
 /// replaces an infinite end, and twice the default (at least 1) for points inside. Sets may violate rules between
 /// parameters; the plug-in then refuses them.
 std::vector<ParameterSet> parameter_sweep(const PluginInfo& info, const SweepOptions& options);
+
+/// Parameters that the sets of `parameter_sweep` vary, and those that are neither varied nor pinned: free strings,
+/// names, and without `infinite_ends` ranges that have no end. A parameter with one end is in both lists.
+struct SweptParams {
+  std::vector<std::string> varied, unvaried;
+};
+SweptParams swept_params(const PluginInfo& info, const SweepOptions& options);
 
 /// Parameter resolver without a scene: spectra are the numbers given, linear in between (rgb: their mean at every
 /// wavelength), every material name resolves to `material_by_name`, and there are no textures.

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -46,7 +45,7 @@ constexpr JobParam kParams[] = {
     kCsvParam,
     JobParam("json", text, "File for Google Benchmark's JSON with frond's counters; - is standard output.",
              {.type = "FILE", .path = PathUse::write}),
-    chart_param("plot", "Chart of variance against the cost of a hit: .svg or .png."),
+    chart_param("plot", "Chart of the CPU time to a standard error of 1 %: .svg or .png."),
 };
 
 /// Returns --angles. Throws InputError for 90 degrees, at which a ray hits neither side.
@@ -124,14 +123,6 @@ struct NamedWorth {
 constexpr NamedWorth kWorths[] = {{"albedo", &SampleWorth::albedo, BsdfCall::sample, "variance"},
                                   {"sky", &SampleWorth::sky, BsdfCall::hit, "sky_variance"},
                                   {"sun", &SampleWorth::sun, BsdfCall::hit, "sun_variance"}};
-
-/// Returns the CPU time in us until the standard error is 1 % of the mean; infinite if the mean is 0.
-double us_to_percent(const Worth& worth, double variance, const Estimate& time_ns) {
-  constexpr double kPercent = 0.01;
-  if (worth.mean.mean == 0) return std::numeric_limits<double>::infinity();
-  const double error = kPercent * worth.mean.mean;
-  return time_ns.mean * 1e-3 * variance / (error * error);
-}
 
 /// Columns that identify a measurement, common to both tables.
 void add_row_head(Table& table, const BenchMeasurement& r) {

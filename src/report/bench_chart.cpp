@@ -1,24 +1,69 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "core/error.h"
 #include "report/bench_report.h"
 
 namespace frond {
 namespace {
 
-constexpr size_t kMostAngles = 6;
+constexpr size_t kMostAngles = 6, kMostMaterials = 12;
+constexpr const char* kColor = "#0072b2";
 
-/// Returns relative variance against time; NaN if the mean is 0.
-ChartPoint point_of(const BenchMeasurement& r, const Worth& w) {
-  const double square = w.mean.mean * w.mean.mean, variance = w.variance.mean / square;
-  return with_error(r.time(BsdfCall::hit).mean, variance > 0 ? variance : NAN, w.variance.standard_error() / square);
+/// Returns a time with the unit that keeps it short.
+std::string time_text(double ns) {
+  constexpr std::array kUnits{"ns", "µs", "ms", "s"};
+  size_t unit = 0;
+  for (; unit + 1 < kUnits.size() && ns >= 999.5; ++unit) ns /= 1000;
+  return fmt::format("{:g} {}", ns < 9.95 ? std::round(10 * ns) / 10 : std::round(ns), kUnits[unit]);
+}
+
+/// CPU time in ns to a standard error of 1 %, at least that of one sample; NaN if nothing is scattered.
+struct TimeToPercent {
+  double ns = NAN, standard_error = 0;
+};
+
+TimeToPercent time_of(const BenchMeasurement& r, const Worth& worth) {
+  const Estimate& hit = r.time(BsdfCall::hit);
+  const double ns = 1e3 * us_to_percent(worth, worth.variance.mean, hit);
+  if (!std::isfinite(ns)) return {};
+  if (ns <= hit.mean) return {hit.mean, hit.standard_error()};
+  return {ns, ns * std::hypot(hit.standard_error() / hit.mean, worth.variance.standard_error() / worth.variance.mean)};
+}
+
+/// The measurements of one material under one light, in a row at the height y.
+void add_row(Panel& panel, const std::vector<const BenchMeasurement*>& row, Worth SampleWorth::*worth, double y,
+             const std::vector<double>& angles) {
+  constexpr double kAbove = 0.30, kBelow = 0.34;  // of texts, in rows
+  double logs = 0, count = 0;
+  for (const BenchMeasurement* r : row) {
+    const auto [ns, error] = time_of(*r, r->worth.*worth);
+    if (std::isnan(ns)) continue;
+    logs += std::log(ns), ++count;
+    panel.series.push_back(line("", kColor, 2, Dash::solid, {{ns - error, y}, {ns + error, y}}));
+    panel.series.push_back(marks("", kColor, series_mark(place_in(angles, r->theta_deg)), 5, {{ns, y}}));
+    if (row.size() > 1) continue;
+    panel.series.push_back({"", "", 0, {}, Mark::none, 0, {{ns, y - kBelow}}, time_text(ns)});
+  }
+  const Range& x = panel.x.range;
+  const double at = count > 0 ? std::exp(logs / count) : std::sqrt(x.low * x.high);
+  const std::string name = row[0]->material + (count > 0 ? "" : ": nothing is scattered");
+  panel.series.push_back({"", "", 0, {}, Mark::none, 0, {{at, y + kAbove}}, name});
 }
 
 }  // namespace
 
+double us_to_percent(const Worth& worth, double variance, const Estimate& time_ns) {
+  constexpr double kPercent = 0.01;
+  if (worth.mean.mean == 0) return std::numeric_limits<double>::infinity();
+  const double error = kPercent * worth.mean.mean;
+  return time_ns.mean * 1e-3 * variance / (error * error);
+}
+
 void check_bench_chart(size_t materials, size_t angles) {
-  if (materials > kSeriesColors.size())
-    fail({}, "--plot: {} materials are more than the {} distinguishable colours", materials, kSeriesColors.size());
+  if (materials > kMostMaterials)
+    fail({}, "--plot: {} materials are more than the {} rows of a chart", materials, kMostMaterials);
   if (angles > kMostAngles)
     fail({}, "--plot: {} angles are more than the {} distinguishable marks", angles, kMostAngles);
 }
@@ -28,38 +73,36 @@ Chart bench_chart(const std::vector<BenchMeasurement>& measurements) {
   const auto materials = distinct(measurements, &BenchMeasurement::material);
   const auto angles = distinct(measurements, &BenchMeasurement::theta_deg);
   check_bench_chart(materials.size(), angles.size());
-  const std::string time = fmt::format("CPU time of a hit, {} wavelength{} (ns)", lanes, lanes == 1 ? "" : "s");
+  const double rows = double(materials.size());
+  const std::string per = fmt::format("{} wavelength{}", lanes, lanes == 1 ? "" : "s");
   Chart chart{2};
+  chart.title = fmt::format("CPU time to a standard error of 1 %, {}{}", per,
+                            angles.size() == 1 ? fmt::format(", at {:g}° from the normal", angles[0]) : "");
   for (const auto worth : {&SampleWorth::sky, &SampleWorth::sun}) {
-    Range x, y;
-    std::vector<Series> points;
-    for (const BenchMeasurement& r : measurements) {
-      if (r.lanes != lanes) continue;
-      const ChartPoint p = point_of(r, r.worth.*worth);
-      x.include(p.x), y.include(p.y);
-      const double error = r.time(BsdfCall::hit).standard_error();
-      const std::string color = kSeriesColors[place_in(materials, r.material)];
-      points.push_back(marks("", color, series_mark(place_in(angles, r.theta_deg)), 3.5, {p}));
-      points.push_back(line("", color, 1.2, Dash::solid, {{p.x - error, p.y}, {p.x + error, p.y}}));
+    Range x;
+    for (const BenchMeasurement& r : measurements)
+      if (r.lanes == lanes) x.include(time_of(r, r.worth.*worth).ns);
+    if (x.is_empty()) x = {1, 1};
+    const double margin = 3 * std::pow(x.high / x.low, 0.12);  // for the names
+    x = {x.low / margin, x.high * margin};
+    std::vector<Tick> ticks;
+    for (double ns = 1; ns <= x.high; ns *= 10)
+      if (ns >= x.low) ticks.push_back({ns, time_text(ns)});
+    if (ticks.size() > 5) std::erase_if(ticks, [](const Tick& t) { return std::lround(std::log10(t.value)) % 3 != 0; });
+    Panel& panel = chart.panels.emplace_back(
+        Panel{400, 84 + 56 * rows, worth == &SampleWorth::sky ? "under an overcast sky" : "under the sun",
+              Axis{"", x, true, 0, ticks}, Axis{"", {-0.6, rows - 0.4}, false, 0, {{-1, ""}}}});
+    for (size_t m = 0; m < materials.size(); ++m) {
+      std::vector<const BenchMeasurement*> row;
+      for (const BenchMeasurement& r : measurements)
+        if (r.lanes == lanes && r.material == materials[m]) row.push_back(&r);
+      add_row(panel, row, worth, rows - 1 - double(m), angles);
     }
-    if (y.is_empty()) y = {1, 1};
-    x = x.widened(), y = y.widened();
-    const std::string title = worth == &SampleWorth::sky ? "under an overcast sky" : "under the sun";
-    const Axis variance{"variance of one sample / mean²", y, true};
-    Panel& panel = chart.panels.emplace_back(Panel{500, 460, title, {time, x, true}, variance});
-    for (double k = std::floor(std::log10(x.low * y.low)); k <= std::ceil(std::log10(x.high * y.high)); ++k) {
-      const double product = std::pow(10, k);  // time x variance
-      panel.series.push_back(
-          line("", "#a0a0a0", 1, Dash::dashed, {{x.low, product / x.low}, {x.high, product / x.high}}));
-    }
-    std::ranges::move(points, std::back_inserter(panel.series));
   }
-  auto& legend = chart.panels[0].series;
-  legend[0].label = "time × variance alike";
-  for (size_t m = 0; m < materials.size(); ++m)
-    legend.push_back(marks(materials[m], kSeriesColors[m], Mark::disk, 3.5));
-  for (size_t a = 0; a < angles.size(); ++a)
-    legend.push_back(marks(fmt::format("{:g}° from the normal", angles[a]), "#808080", series_mark(a), 3.5));
+  if (angles.size() > 1)
+    for (size_t a = 0; a < angles.size(); ++a)
+      chart.panels[0].series.push_back(
+          marks(fmt::format("{:g}° from the normal", angles[a]), kColor, series_mark(a), 5));
   return chart;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace frond {
@@ -14,19 +15,63 @@ std::string_view verdict(const LawSummary& law) {
   return law.failures == 0 ? "holds" : "BROKEN";
 }
 
-std::string counted(size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+std::string counted(size_t count, std::string_view one, std::string_view several) {
+  return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
 std::string tests_text(const LawSummary& law) {
   if (law.tests == 0) return "";
-  const std::string tests = counted(static_cast<size_t>(law.tests), "test");
+  const std::string tests = counted(static_cast<size_t>(law.tests), "test", "tests");
   return law.failures == 0 ? tests : fmt::format("{} of {}", law.failures, tests);
 }
 
 /// Returns the p-value of a statistical law. For other laws the verdict says the same.
 std::string p_text(const LawSummary& law) {
   return law.worst && law.worst->statistical ? fmt::format("{:.2g}", law.worst->p_value) : "";
+}
+
+/// Returns a number for a sentence: three digits.
+std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "none"; }
+
+/// Returns a number that differs from 1 by little: three digits of the difference.
+std::string number_above_one(double v) {
+  return v < 2 ? fmt::format("{:.{}f}", v, std::clamp(2 - int(std::floor(std::log10(std::abs(v - 1)))), 2, 4))
+               : number(v);
+}
+
+/// Returns where a finding was measured: parameters, wavelength, angle.
+std::string place_text(const Finding& f) {
+  std::string text = f.parameters;
+  if (std::isfinite(f.wavelength_nm)) text += fmt::format(", {:g} nm", f.wavelength_nm);
+  if (std::isfinite(f.theta_deg))
+    text += fmt::format(", wo at {:g} deg on the {}", f.theta_deg < 90 ? f.theta_deg : 180 - f.theta_deg,
+                        f.theta_deg < 90 ? "front" : "back");
+  return text;
+}
+
+/// Returns the largest directional albedo, where it was found, and the excess that would have been found there.
+std::string energy_text(const LawSummary& law, double factor) {
+  constexpr double kNegligible = 1e-6;  // a standard error of rounding
+  const Measure& m = law.largest->measure;
+  std::string text = fmt::format("      directional albedo: at most {:.6g}", m.value);
+  if (!(m.standard_error <= kNegligible * m.value)) text += fmt::format(" +- {:.2g}", m.standard_error);
+  text += fmt::format(" ({})\n", place_text(*law.largest));
+  if (m.value == 0) return text + "      nothing is scattered\n";
+  text += fmt::format("      detectable: an excess over 1 of {} there", number(m.detectable));
+  if (law.failures == 0 && std::isfinite(factor))
+    text += fmt::format("; f too large everywhere by a factor of {}", number_above_one(factor));
+  return text + '\n';
+}
+
+/// Returns the largest value that a law has measured, and the smallest error that it would have found.
+std::string power_text(const LawSummary& law, double factor) {
+  if (!law.largest) return "";
+  if (law.law.law == Law::energy) return energy_text(law, factor);
+  const Measure& m = law.largest->measure;
+  std::string text = fmt::format("      {}: at most {:.2g}; detectable: {}", m.quantity, m.value, number(m.detectable));
+  if (number(law.least_detectable) != number(m.detectable))
+    text += fmt::format(" there, {} at best", number(law.least_detectable));
+  return text + '\n';
 }
 
 /// Returns the findings that fail, for a broken law.
@@ -62,26 +107,62 @@ bool is_there(const ConformReport& report) {
   return std::ranges::any_of(report.findings, [](const Finding& f) { return f.law != Law::parameters; });
 }
 
+/// Returns which sets of parameters the verdict is about, without a verb.
+std::string scope_text(const ConformReport& r) {
+  const TestedParameters& p = r.parameters;
+  const std::string given = p.are_defaults ? "the defaults" : "the given parameters";
+  if (p.given_only) return given + " only";
+  if (p.varied.empty())
+    return fmt::format("{} only: there is no {}parameter with a range", given, p.are_defaults ? "" : "other ");
+  return fmt::format("{} and {} of {}", given, p.are_swept ? "over the ranges" : "at the ends of the ranges",
+                     fmt::join(p.varied, ", "));
+}
+
+/// Returns what was not tested.
+std::string untested_text(const TestedParameters& p) {
+  std::string text;
+  if (!p.unvaried.empty()) text += fmt::format("Not varied: {}.\n", fmt::join(p.unvaried, ", "));
+  if (!p.refused.empty())
+    text += fmt::format("{} {} refused, the first with {}\n",
+                        counted(p.refused.size(), "set of parameters", "sets of parameters"),
+                        p.refused.size() == 1 ? "is" : "are", p.refused.front());
+  return text;
+}
+
+std::string samples_text(const ConformReport& r) {
+  const std::string at_given = fmt::format("{} samples for each direction", r.effort.samples);
+  if (r.parameters.sets == 1 || r.parameters.samples_at_ends == r.effort.samples) return at_given;
+  return fmt::format("{}, {} at the ends of ranges", at_given, r.parameters.samples_at_ends);
+}
+
 }  // namespace
 
 bool ConformReport::all_hold() const { return std::ranges::all_of(findings, &Finding::passed); }
 
 std::string conform_text(const ConformReport& r) {
   std::string text = fmt::format(
-      "{}\n{} nm; wo at {} deg from the normal, front and back; {} samples each; seed {}\n{}. If every law "
-      "holds, "
-      "the probability that any is reported as broken is {:.2g}: a test fails below p = {:.2g}.\n\n",
-      r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), r.effort.samples,
-      r.effort.seed, counted(r.findings.size(), "test"), r.false_alarm_rate, r.level);
+      "{}\n{} nm; wo at {} deg from the normal, front and back; {}; {}; seed {}\n"
+      "{}. If every law holds, the probability that any is reported as broken is {:.2g}: a test fails below p = "
+      "{:.2g}. "
+      "An error of the size called detectable is found with a probability of {:.0f} %.\n\n",
+      r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "),
+      counted(r.parameters.sets, "set of parameters", "sets of parameters"), samples_text(r), r.effort.seed,
+      counted(r.findings.size(), "test", "tests"), r.effort.false_alarm_rate, r.level, 100 * kPower);
   if (r.all_hold() && !is_there(r)) text += "The surface is invisible: it has no BSDF to test.\n\n";
+  const double factor = detectable_factor(r.findings);
   text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", "", "law", "", "worst p", "");
   for (const LawSummary& law : summarise(r.findings)) {
     text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", verdict(law), law.law.name, tests_text(law),
                         p_text(law), law.law.text);
-    text += failures_text(r, law.law.law);
+    text += power_text(law, factor) + failures_text(r, law.law.law);
   }
-  if (!r.all_hold()) return text + "\nBroken: " + broken_text(r) + ".\n";
-  return text + (is_there(r) ? "\nAll tested laws hold.\n" : "\nOnly the law of parameters was tested; it holds.\n");
+  return text + '\n' + conform_verdict(r) + '\n' + untested_text(r.parameters);
+}
+
+std::string conform_verdict(const ConformReport& r) {
+  if (!r.all_hold()) return "Broken: " + broken_text(r) + ".";
+  if (!is_there(r)) return "Only the law of parameters was tested; it holds.";
+  return fmt::format("No law was found broken, at {}.", scope_text(r));
 }
 
 std::vector<Fact> conform_facts(const ConformReport& r) {
@@ -90,9 +171,18 @@ std::vector<Fact> conform_facts(const ConformReport& r) {
           {"wavelengths_nm", r.wavelengths_nm},
           {"angles_deg", r.effort.angles_deg},
           {"samples", double(r.effort.samples)},
+          {"samples_at_ends", double(r.parameters.samples_at_ends)},
           {"seed", double(r.effort.seed)},
-          {"false_alarm_rate", r.false_alarm_rate},
+          {"false_alarm_rate", r.effort.false_alarm_rate},
+          {"excess", r.effort.excess},
           {"level", r.level},
+          {"power", kPower},
+          {"parameter_sets", double(r.parameters.sets)},
+          {"varied", fmt::format("{}", fmt::join(r.parameters.varied, ", "))},
+          {"unvaried", fmt::format("{}", fmt::join(r.parameters.unvaried, ", "))},
+          {"refused", fmt::format("{}", fmt::join(r.parameters.refused, "\n"))},
+          {"detectable_factor", detectable_factor(r.findings)},
+          {"verdict", conform_verdict(r)},
           {"all_hold", r.all_hold()}};
 }
 
@@ -105,6 +195,15 @@ std::vector<Table> conform_tables(const ConformReport& r) {
     laws.add("tests", law.tests);
     laws.add("failures", law.failures);
     laws.add("worst_p", law.worst && law.worst->statistical ? law.worst->p_value : kNone);
+    const Finding none{.law = law.law.law, .where = {}, .message = {}};
+    const Finding& largest = law.largest ? *law.largest : none;
+    laws.add("quantity", std::string(largest.measure.quantity));
+    laws.add("largest", largest.measure.value, largest.measure.standard_error);
+    laws.add("largest_parameters", largest.parameters);
+    laws.add("largest_wavelength_nm", largest.wavelength_nm);
+    laws.add("largest_theta_deg", largest.theta_deg);
+    laws.add("detectable", largest.measure.detectable);
+    laws.add("detectable_least", law.least_detectable);
     laws.add("says", std::string(law.law.text));
   }
   for (const Finding& f : r.findings) {
@@ -113,6 +212,12 @@ std::vector<Table> conform_tables(const ConformReport& r) {
     findings.add("where", f.where);
     findings.add("message", f.message);
     findings.add("p", f.statistical ? f.p_value : kNone);
+    findings.add("parameters", f.parameters);
+    findings.add("wavelength_nm", f.wavelength_nm);
+    findings.add("theta_deg", f.theta_deg);
+    findings.add("quantity", std::string(f.measure.quantity));
+    findings.add("value", f.measure.value, f.measure.standard_error);
+    findings.add("detectable", f.measure.detectable);
   }
   return {laws, findings};
 }

@@ -9,21 +9,35 @@
 
 namespace frond {
 
+/// The sets of parameters that the job conform has tested.
+struct TestedParameters {
+  bool are_defaults = true;  ///< the first set: no parameter is given
+  bool given_only = false;   ///< on request, this set alone
+  bool are_swept = false;    ///< corners and points inside, too
+  size_t sets = 1;
+  int samples_at_ends = 0;                    ///< of all sets but the first
+  std::vector<std::string> varied, unvaried;  ///< names, with what is left out of their ranges
+  std::vector<std::string> refused = {};      ///< sets that the plug-in refuses, with its reasons
+};
+
 /// All findings of the job conform, with their verdict.
 struct ConformReport {
   std::string material;  ///< name and parameters
   std::vector<double> wavelengths_nm;
   ExaminationEffort effort;
-  double false_alarm_rate = 0;
+  TestedParameters parameters = {};
   double level = 0;  ///< p-value below which a test fails
-  Findings findings;
+  Findings findings = {};
 
   bool all_hold() const;
 };
 
-/// Returns text for a terminal: a line for each law, and the failures of broken laws.
+/// Returns text for a terminal: for each law the verdict, the largest measured value and the smallest error that would
+/// have been found; the failures of broken laws; what was not tested.
 std::string conform_text(const ConformReport& report);
-/// Returns the settings of the test, and whether all laws hold.
+/// Returns the last sentence: broken laws, or the parameters at which none was found broken.
+std::string conform_verdict(const ConformReport& report);
+/// Returns the settings of the test, its verdict, and whether all laws hold.
 std::vector<Fact> conform_facts(const ConformReport& report);
 /// Returns the tables "laws" (verdicts) and "findings" (all tests).
 std::vector<Table> conform_tables(const ConformReport& report);

@@ -25,8 +25,8 @@ ColorScale scale_of(const SphereMap& map) {
   if (!is_ratio) return {{map.found, {0, all.high > 0 ? all.high : 1}}};
   const auto enough = std::ranges::find_if(kLimits, [&](double x) { return std::log(x) >= all.high; });
   const double most = enough == kLimits.end() ? kLimits.back() : *enough, least = 1 / most;
-  const std::vector<Tick> ticks{
-      {least, fmt::format("≤ {:.3g}", least)}, {1, "1"}, {most, fmt::format("≥ {:.3g}", most)}};
+  std::vector<Tick> ticks{{least, fmt::format("≤ {:.3g}", least)}, {1, "1"}, {most, fmt::format("≥ {:.3g}", most)}};
+  if (most > 4) ticks.insert(ticks.end(), {{0.5, "0.5"}, {2, "2"}});
   return {{fmt::format("{}, over {}", map.found, map.expected), {least, most}, true, 0, ticks}, kRatioColors};
 }
 
@@ -34,12 +34,24 @@ ColorScale scale_of(const SphereMap& map) {
 /// front.
 double radius_of(double cos_theta) { return std::sqrt(std::max(0.0, 1 - std::abs(cos_theta))); }
 
+/// Returns the finding in lines that fit the chart.
+std::vector<std::string> captions_of(const Finding& finding) {
+  constexpr size_t kMost = 92;  // characters
+  std::vector<std::string> lines{finding.where};
+  for (std::string rest = finding.message; !rest.empty();) {
+    const size_t end = rest.size() <= kMost ? rest.size() : std::min(rest.rfind(' ', kMost), rest.size());
+    lines.push_back(rest.substr(0, end));
+    rest.erase(0, std::min(rest.size(), end + 1));
+  }
+  return lines;
+}
+
 }  // namespace
 
 Chart sphere_chart(const Finding& finding) {
   const SphereMap& map = *finding.map;
   const ColorScale scale = scale_of(map);
-  Panel panel{884, 497, " ", {"", {-2.2, 2.2}}, {"", {-1.1, 1.25}}, "", true};
+  Panel panel{640, 366, " ", {"", {-2.2, 2.2}}, {"", {-1.1, 1.25}}, "", true};
   const PolarMap front{panel, -1.12}, back{panel, 1.12};
   for (const auto& p : map.patches) {
     const auto [inner, outer] = std::minmax({radius_of(p.box.z0), radius_of(p.box.z1)});
@@ -48,16 +60,15 @@ Chart sphere_chart(const Finding& finding) {
   }
   for (const PolarMap& disk : {front, back}) {
     disk.add_circles({radius_of(std::sqrt(0.75)), radius_of(0.5), 1});
-    const char* side = disk.center_x < 0 ? "wi on the front" : "wi on the back, seen through the front";
+    const char* side = disk.center_x < 0 ? "light directions wi on the front" : "on the back, seen through the front";
     panel.series.push_back({"", "", 0, {}, Mark::none, 0, {{disk.center_x, 1.14}}, side});
   }
   const PolarMap& seen = map.wo.z > 0 ? front : back;
-  seen.add_mark(seen.at(radius_of(double(map.wo.z)), std::atan2(double(map.wo.y), double(map.wo.x))), Mark::disk, "wo");
+  const ChartPoint wo = seen.at(radius_of(double(map.wo.z)), std::atan2(double(map.wo.y), double(map.wo.x)));
+  seen.add_mark(wo, Mark::disk, "");
+  panel.series.push_back({"", "", 0, {}, Mark::none, 0, {{wo.x, wo.y - 0.15}}, "wo"});
   const std::string verdict = finding.passed ? " holds (the largest deviation)" : " is broken";
-  return {2,
-          {panel, scale.panel(panel.height)},
-          std::string(law_name(finding.law)) + verdict,
-          {finding.where, finding.message}};
+  return {2, {panel, scale.panel(panel.height)}, std::string(law_name(finding.law)) + verdict, captions_of(finding)};
 }
 
 }  // namespace frond

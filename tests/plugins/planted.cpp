@@ -1,6 +1,7 @@
 #include "tests/planted/planted.h"
 
 #include "core/plugin_module.h"
+#include "core/texture.h"
 
 /// The materials that are wrong on purpose, as somebody else's shared object.
 namespace frond::test {
@@ -28,7 +29,36 @@ struct NotThere final : Material {
   const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
 };
 
+constexpr Param kReflectance[] = {{.name = "reflectance",
+                                   .kind = ParamKind::spectrum_texture,
+                                   .default_value = 0.5,
+                                   .range = {0, 1},
+                                   .doc = "Reflects 5 % more than this."}};
+constexpr Param kScale[] = {
+    {.name = "scale", .kind = ParamKind::real, .default_value = 0.5, .range = kAtLeastZero, .doc = "Any factor."},
+    {.name = "note", .kind = ParamKind::string, .default_value = std::string_view("none"), .doc = "Free text."}};
+
+/// A Lambertian reflector times 1.05.
+struct TooBright final : Material {
+  explicit TooBright(const Params& p) : reflectance(p.spectrum_texture("reflectance")) {}
+  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
+    return arena.make<Honest>(lambda, 1.05f * reflectance->evaluate(hit.at, lambda)[0], 0.f);
+  }
+  std::shared_ptr<const SpectrumTexture> reflectance;
+};
+
+/// Lawful up to a scale of 1, and its range has no end.
+struct Unbounded final : Material {
+  explicit Unbounded(const Params& p) : scale(static_cast<float>(p.real("scale"))) { p.string("note"); }
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
+    return arena.make<Honest>(lambda, scale, 0.f);
+  }
+  float scale;
+};
+
 const MaterialInfo kTable[] = {
+    {{"material", "too_bright", "Reflects 5 % too much.", "", kReflectance}, make_material<TooBright>},
+    {{"material", "unbounded", "Brighter than white at a scale above 1.", "", kScale}, make_material<Unbounded>},
     {{"material", "picky", "Refuses what it dislikes.", "", kLevel}, make_material<Picky>},
     {{"material", "picky_with_itself", "Refuses its own default.", "", kTooHigh}, make_material<Picky>},
     {{"material", "not_there", "A surface that is none.", "", {}}, make_material<NotThere>},

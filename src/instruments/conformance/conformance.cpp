@@ -21,6 +21,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
       const double phi = 0.4 + 0.03 * angle_deg;  // off the axes, where errors of azimuth would not show
       ExaminationEffort own = effort;
       own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
+      const size_t first = findings.size();
       const std::string here = fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back");
       run_guarded(here, findings, [&] {
         const Examination s(bsdf, lambda, sphere_direction(cos_theta, phi), own, here);
@@ -35,6 +36,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
         check_coverage(s, findings);
         check_values(s, findings);
       });
+      for (Finding& f : std::span(findings).subspan(first)) f.theta_deg = side > 0 ? angle_deg : 180 - angle_deg;
     }
   run_guarded(where, findings, [&] { check_awkward_values(bsdf, where, effort.seed, findings); });
   if (claims.reciprocal) run_guarded(where, findings, [&] { check_reciprocity(bsdf, where, effort, findings); });
@@ -46,7 +48,10 @@ double judge(Findings& findings, double false_alarm_rate) {
   for (const Finding& f : findings) tests += f.statistical ? 1 : 0;
   // Exact tests have p = 0 or 1 and raise no false alarms, so only statistical ones share the rate.
   const double level = sidak_level(false_alarm_rate, tests);
-  for (Finding& f : findings) f.passed = f.p_value >= level;
+  for (Finding& f : findings) {
+    f.passed = f.p_value >= level;
+    if (f.measure.detectable_at) f.measure.detectable = f.measure.detectable_at(level);
+  }
   return level;
 }
 
@@ -58,8 +63,19 @@ std::vector<LawSummary> summarise(std::span<const Finding> findings) {
     ++law.tests;
     law.failures += f.passed ? 0 : 1;
     if (!law.worst || f.p_value < law.worst->p_value) law.worst = &f;
+    if (f.measure.quantity.empty()) continue;
+    if (!law.largest || !(f.measure.value <= law.largest->measure.value)) law.largest = &f;  // NaN is the largest
+    law.least_detectable = std::fmin(law.least_detectable, f.measure.detectable);
   }
   return laws;
+}
+
+double detectable_factor(std::span<const Finding> findings) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Finding& f : findings)
+    if (f.law == Law::energy && f.measure.value > 0)
+      least = std::fmin(least, (1 + f.measure.detectable) / f.measure.value);
+  return least;
 }
 
 std::set<Law> broken_laws(std::span<const Finding> findings) {

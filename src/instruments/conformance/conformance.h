@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <set>
 #include <span>
@@ -71,6 +73,20 @@ struct SphereMap {
   std::vector<Patch> patches;
 };
 
+/// Probability with which an error of the size that is called detectable would have been found.
+inline constexpr double kPower = 0.95;
+
+/// What a test has measured, and the smallest error that it would have found.
+struct Measure {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  std::string_view quantity;  ///< name of `value`, such as "directional albedo"; empty: nothing is measured
+  double value = kNone, standard_error = kNone;
+  /// The smallest error found with the probability kPower by a test at this level; may be empty.
+  std::function<double(double level)> detectable_at = {};
+  double detectable = kNone;  ///< set by `judge`
+};
+
 /// The outcome of one test of one law.
 struct Finding {
   Law law;
@@ -80,6 +96,10 @@ struct Finding {
   bool statistical = false;
   bool passed = true;                              ///< set by `judge`
   std::shared_ptr<const SphereMap> map = nullptr;  ///< if ExaminationEffort requests maps and the law has directions
+  Measure measure = {};
+  std::string parameters = {};            ///< label of the set of parameters
+  double wavelength_nm = Measure::kNone;  ///< of a test of one wavelength
+  double theta_deg = Measure::kNone;      ///< of wo from the normal, above 90 on the back; NaN: several directions
 };
 using Findings = std::vector<Finding>;
 
@@ -96,7 +116,12 @@ struct ExaminationEffort {
   std::vector<double> angles_deg = {0, 30, 60, 80, 89};
   uint64_t seed = 1;
   bool maps = false;  ///< keep a SphereMap with each finding
+  /// The law of energy draws further samples, up to kMostRounds times `samples`, until it would find this excess over 1
+  /// with the probability kPower. 0: no further samples.
+  double excess = 0.05;
+  double false_alarm_rate = 1e-6;  ///< of a report, as `judge` takes it
 };
+inline constexpr int kMostRounds = 50;
 
 /// Tests all laws of a BSDF. `where` is the start of each finding's text. Call `judge` afterwards.
 Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims,
@@ -110,10 +135,16 @@ double judge(Findings& findings, double false_alarm_rate);
 struct LawSummary {
   LawInfo law;
   int tests = 0, failures = 0;
-  const Finding* worst = nullptr;  ///< the finding with the smallest p
+  const Finding* worst = nullptr;    ///< the finding with the smallest p
+  const Finding* largest = nullptr;  ///< the finding with the largest measured value; nullptr: nothing was measured
+  double least_detectable = Measure::kNone;  ///< smallest error that one of the tests would have found
 };
 /// Returns a summary for each law, in the order of kLaws.
 std::vector<LawSummary> summarise(std::span<const Finding> findings);
+
+/// Smallest factor on f, the same in all tests, that the law of energy would have found with the probability kPower;
+/// not finite if it was not tested or nothing scatters.
+double detectable_factor(std::span<const Finding> findings);
 
 /// Laws with at least one finding that did not pass.
 std::set<Law> broken_laws(std::span<const Finding> findings);

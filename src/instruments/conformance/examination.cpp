@@ -15,6 +15,22 @@ std::vector<Vec3> directions(std::span<const BsdfSample> samples) {
 
 }  // namespace
 
+EqualityTest::EqualityTest(const Estimate& a, const Estimate& b) {
+  const double larger = std::max(a.mean, b.mean);
+  p = equality_p(a, b, kRounding * larger);
+  const Estimate difference{a.mean - b.mean, a.variance + b.variance, a.third_cumulant - b.third_cumulant};
+  measure = {.quantity = "relative difference",
+             .value = larger == 0 ? 0 : std::abs(difference.mean) / larger,
+             .standard_error = difference.standard_error() / larger};
+  if (larger > 0)
+    measure.detectable_at = [difference, larger](double level) {
+      const Estimate opposite{-difference.mean, difference.variance, -difference.third_cumulant};
+      return kRounding + std::max(detectable_difference(difference, level / 2, kPower),
+                                  detectable_difference(opposite, level / 2, kPower)) /
+                             larger;
+    };
+}
+
 Examination::Examination(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
                          const ExaminationEffort& effort, const std::string& asked_where)
     : bsdf(asked),
@@ -22,6 +38,8 @@ Examination::Examination(const Bsdf& asked, const SampledWavelengths& wavelength
       wo(direction),
       where(asked_where),
       maps(effort.maps),
+      excess(effort.excess),
+      false_alarm_rate(effort.false_alarm_rate),
       drawn(effort.samples),
       pilot(draw(effort.samples / kPilotShare, hash_key(effort.seed, 0))),
       samples(draw(effort.samples, hash_key(effort.seed, 1))),

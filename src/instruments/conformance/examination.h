@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "instruments/conformance/conformance.h"
 #include "instruments/cubature.h"
+#include "instruments/errors/power.h"
 #include "instruments/errors/statistics.h"
 
 template <>
@@ -60,7 +61,8 @@ struct Examination {
   Vec3 wo;
   std::string where;
   bool maps;
-  int64_t drawn;  ///< calls of `sample`
+  double excess, false_alarm_rate;  ///< see ExaminationEffort
+  int64_t drawn;                    ///< calls of `sample`
   /// A quarter as many independent samples, which determine the bins and the bins that can be tested: choosing tests by
   /// the tested samples would bias their p-values.
   std::vector<BsdfSample> pilot;
@@ -85,6 +87,13 @@ inline constexpr double kRounding = 1e-3;
 
 /// Relative error allowed to the quadrature of a pdf: float rounding of the pdf and the rule's own error.
 inline constexpr double kQuadrature = 5e-4;
+
+/// Comparison of two estimates by equality_p with a slack of kRounding.
+struct EqualityTest {
+  EqualityTest(const Estimate& a, const Estimate& b);
+  double p;
+  Measure measure;  ///< relative difference
+};
 
 /// Effective count below which a mean is far from normally distributed.
 inline constexpr double kEnoughForNormal = 100;
@@ -124,9 +133,10 @@ inline bool is_proper(const SampledSpectrum& s) {
 }
 
 /// A finding of a statistical test.
-inline Finding statistical(Law law, const Examination& s, double p_value, std::string message,
-                           std::shared_ptr<const SphereMap> map) {
+inline Finding statistical(Law law, const Examination& s, double p_value, std::string message, Measure measure,
+                           std::shared_ptr<const SphereMap> map = nullptr) {
   Finding finding{.law = law, .where = s.where, .message = std::move(message), .p_value = p_value, .statistical = true};
+  finding.measure = std::move(measure);
   finding.map = std::move(map);
   return finding;
 }
@@ -195,8 +205,11 @@ class Verdict {
   }
 
   bool failed() const { return finding_.p_value == 0; }
-  /// Sets the direction that the following expectations refer to.
+  /// Begins a case: a direction or a pair of them.
+  void begin() { ++cases_, case_failed_ = false; }
+  /// Begins a case and sets the direction that the following expectations refer to.
   void at(const Vec3& wi) {
+    begin();
     if (!series_) return;
     bin_ = series_->bins.find(wi);
     asked_[bin_] += 1;
@@ -206,6 +219,7 @@ class Verdict {
   void expect(bool holds, fmt::format_string<Args...> format, const Args&... args) {
     if (holds) return;
     if (series_) faults_[bin_] += 1;
+    if (!case_failed_) ++failures_, case_failed_ = true;
     if (failed()) return;
     finding_.p_value = 0;
     finding_.message = fmt::vformat(format, fmt::make_format_args(args...));
@@ -213,6 +227,10 @@ class Verdict {
   /// The verdict as a finding: p = 1 or 0.
   Finding finding() const {
     Finding result = finding_;
+    if (cases_ > 0)
+      result.measure = {.quantity = "share of directions that break it",
+                        .value = failures_ / cases_,
+                        .detectable_at = [n = cases_](double) { return detectable_share(n, kPower); }};
     if (series_ && failed()) result.map = map_of_faults();
     return result;
   }
@@ -223,6 +241,8 @@ class Verdict {
   Finding finding_;
   const Examination* series_ = nullptr;
   size_t bin_ = 0;
+  double cases_ = 0, failures_ = 0;
+  bool case_failed_ = false;
   std::vector<double> asked_, faults_;
 };
 

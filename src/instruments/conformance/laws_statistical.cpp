@@ -56,15 +56,26 @@ void check_sampling(const Examination& s, Findings& findings) {
   if (count < 50 || mass <= 0) return;    // purely specular, or a fault that coverage and normalisation find
   if (s.pdf_error > kQuadrature) return;  // the number expected in each bin is not known well enough
   const std::vector<double> expected = scaled(s.pdf_mass, count / mass);
-  findings.push_back(statistical(Law::sampling, s, chi_square_p(observed, expected),
+  const ChiSquare test = chi_square(observed, expected);
+  Measure measure{.quantity = "RMS relative deviation of bins"};
+  if (test.freedom > 0) {
+    measure.value = std::sqrt(std::max(0.0, test.statistic - test.freedom) / count);
+    measure.detectable_at = [freedom = test.freedom, count](double level) {
+      return detectable_deviation(freedom, count, level, kPower);
+    };
+  }
+  findings.push_back(statistical(Law::sampling, s, test.p,
                                  fmt::format("{} sampled directions in {} bins, largest deviation in {}", count,
                                              s.bins.size(), farthest_off(s, observed, expected)),
+                                 measure,
                                  s.map("directions sampled", observed, "directions expected from pdf", expected)));
 }
 
 void check_normalisation(const Examination& s, Findings& findings) {
   const double mass = total(s.pdf_mass), error = kQuadrature + s.pdf_error;
   const auto deltas = std::ranges::count_if(s.samples, is_specular);
+  Measure measure{.quantity = "difference of pdf's integral"};
+  if (mass <= 0) measure.quantity = "";  // all lobes are delta lobes
   const auto map = s.exact ? s.map("directions sampled", counts(s), "directions expected from pdf",
                                    scaled(s.pdf_mass, static_cast<double>(s.drawn)))
                            : nullptr;
@@ -74,14 +85,23 @@ void check_normalisation(const Examination& s, Findings& findings) {
     verdict.expect(mass >= least && mass <= 1 + error, "pdf integrates to {:.6g}, not to 1", mass);
     findings.push_back(verdict.finding());
     findings.back().map = map;
+    measure.value = std::abs(mass - 1);
+    measure.detectable_at = [most = error + (deltas > 0 ? 0 : s.overlooked)](double) { return most; };
+    findings.back().measure = measure;
     return;
   }
   const int64_t directions = static_cast<int64_t>(s.samples.size()) - deltas;
+  const double share = s.share(directions);
+  measure.value = std::abs(share - mass);
+  // sample returns fewer directions than pdf says; or pdf is too small for the share of directions.
+  measure.detectable_at = [n = s.drawn, low = mass - error, above = error + s.overlooked, error, share](double level) {
+    return std::max(error + detectable_shortfall(n, low, level, kPower),
+                    above + detectable_surplus(n, share, level, kPower));
+  };
   findings.push_back(
       statistical(Law::normalisation, s, binomial_p(directions, s.drawn, mass - error, mass + error + s.overlooked),
-                  fmt::format("pdf integrates to {:.6g}, sample gives a direction in {:.6g} of all calls", mass,
-                              s.share(directions)),
-                  map));
+                  fmt::format("pdf integrates to {:.6g}, sample gives a direction in {:.6g} of all calls", mass, share),
+                  measure, map));
 }
 
 namespace {
@@ -132,12 +152,15 @@ Finding compare(const Examination& s, int lane, BinComparison bin, const std::st
                 const std::shared_ptr<const SphereMap>& map) {
   bin.sampled.add_zeros(s.drawn - bin.sampled.count());
   const Estimate sampled = bin.sampled.estimate();
-  const double slack = kRounding * std::max(sampled.mean, bin.integrated.mean);
-  return statistical(Law::unbiasedness, s, equality_p(sampled, bin.integrated, slack),
-                     fmt::format("{} nm, {}: sample carries {:.4g} +- {:.2g}, f {:.4g} +- {:.2g}",
-                                 s.lambda.nm[static_cast<size_t>(lane)], name, sampled.mean, sampled.standard_error(),
-                                 bin.integrated.mean, bin.integrated.standard_error()),
-                     map);
+  const EqualityTest test(sampled, bin.integrated);
+  const float nm = s.lambda.nm[static_cast<size_t>(lane)];
+  Finding finding =
+      statistical(Law::unbiasedness, s, test.p,
+                  fmt::format("{} nm, {}: sample carries {:.4g} +- {:.2g}, f {:.4g} +- {:.2g}", nm, name, sampled.mean,
+                              sampled.standard_error(), bin.integrated.mean, bin.integrated.standard_error()),
+                  test.measure, map);
+  finding.wavelength_nm = static_cast<double>(nm);
+  return finding;
 }
 
 }  // namespace
@@ -186,10 +209,11 @@ void check_streams(const Examination& s, uint64_t seed, Findings& findings) {
     for (size_t lane = 0; lane < kLanes; ++lane) {
       if (beside[lane].effective_count() < kEnoughForNormal) continue;
       const Estimate a = here[lane].estimate(), b = beside[lane].estimate();
-      findings.push_back(statistical(Law::streams, s, equality_p(a, b, kRounding * std::max(a.mean, b.mean)),
+      const EqualityTest test(a, b);
+      findings.push_back(statistical(Law::streams, s, test.p,
                                      fmt::format("wi {}: mean f is {:.4g} +- {:.2g}, beside it {:.4g} +- {:.2g}", wi,
                                                  a.mean, a.standard_error(), b.mean, b.standard_error()),
-                                     nullptr));
+                                     test.measure));
     }
   }
 }

@@ -44,7 +44,10 @@ std::unique_ptr<Material> make_ready(const MaterialInfo& info, const ParameterSe
     material->prepare(how.preparation);
   } catch (const InputError& e) {
     material = nullptr;
-    if (!must_work) return nullptr;
+    if (!must_work) {
+      if (how.on_refusal) how.on_refusal(set, e);
+      return nullptr;
+    }
     if (how.is_asked_for) throw;
     finding.message = fmt::format("refused: {}", e.what());
     finding.p_value = 0;
@@ -57,40 +60,49 @@ std::unique_ptr<Material> make_ready(const MaterialInfo& info, const ParameterSe
   return material;
 }
 
+/// Tests the laws of one set of parameters.
+void examine_set(const MaterialInfo& info, const ParameterSet& set, bool must_work, const MaterialExamination& how,
+                 Arena& arena, Findings& findings) {
+  ExaminationEffort effort = how.effort;
+  effort.seed = hash_key(effort.seed, hash_bytes(info.name), hash_bytes(set.label));
+  const SampledWavelengths lambda = how.preparation.wavelengths.sample(RandomStream(effort.seed).uniform());
+  const std::string where = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(lambda));
+  const auto material = make_ready(info, set, must_work, where, how, findings);
+  if (!material) return;
+  const Claims claims{how.claims.lossless, how.claims.reciprocal || material->is_reciprocal()};
+  arena.reset();
+  // `evaluate` returns nullptr for an invisible surface.
+  run_guarded(where, findings, [&] {
+    const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena);
+    if (!bsdf) return;
+    const Findings more = examine(*bsdf, lambda, claims, effort, where);
+    findings.insert(findings.end(), more.begin(), more.end());
+  });
+  const std::string tilted = where + ", under a tilted shading normal";
+  run_guarded(tilted, findings, [&] {
+    if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
+      check_awkward_values(*bsdf, tilted, effort.seed, findings);
+  });
+  if (lambda.count == 1) return;  // a path whose only lane is retired has ended
+  SampledWavelengths retired = lambda;
+  retired.active[0] = false;
+  const std::string partly = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(retired));
+  run_guarded(partly, findings, [&] {
+    if (const Bsdf* bsdf = material->evaluate(flat_hit(), retired, arena))
+      check_retired_lanes(*bsdf, retired, partly, effort.seed, findings);
+  });
+}
+
 }  // namespace
 
 Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, const MaterialExamination& how) {
   Findings findings;
   Arena arena;
   for (const ParameterSet& set : sets) {
-    ExaminationEffort effort = how.effort;
-    effort.seed = hash_key(effort.seed, hash_bytes(info.name), hash_bytes(set.label));
-    const SampledWavelengths lambda = how.preparation.wavelengths.sample(RandomStream(effort.seed).uniform());
-    const std::string where = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(lambda));
-    const auto material = make_ready(info, set, &set == sets.data(), where, how, findings);
-    if (!material) continue;
-    const Claims claims{how.claims.lossless, how.claims.reciprocal || material->is_reciprocal()};
-    arena.reset();
-    // `evaluate` returns nullptr for an invisible surface.
-    run_guarded(where, findings, [&] {
-      const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena);
-      if (!bsdf) return;
-      const Findings more = examine(*bsdf, lambda, claims, effort, where);
-      findings.insert(findings.end(), more.begin(), more.end());
-    });
-    const std::string tilted = where + ", under a tilted shading normal";
-    run_guarded(tilted, findings, [&] {
-      if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
-        check_awkward_values(*bsdf, tilted, effort.seed, findings);
-    });
-    if (lambda.count == 1) continue;  // a path whose only lane is retired has ended
-    SampledWavelengths retired = lambda;
-    retired.active[0] = false;
-    const std::string partly = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(retired));
-    run_guarded(partly, findings, [&] {
-      if (const Bsdf* bsdf = material->evaluate(flat_hit(), retired, arena))
-        check_retired_lanes(*bsdf, retired, partly, effort.seed, findings);
-    });
+    const size_t first = findings.size();
+    const bool must_work = !how.may_refuse_all && &set == sets.data();
+    examine_set(info, set, must_work, how, arena, findings);
+    for (Finding& f : std::span(findings).subspan(first)) f.parameters = set.label;
   }
   return findings;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+
+#include "core/error.h"
 #include "core/material.h"
 #include "instruments/conformance/conformance.h"
 #include "instruments/sweep.h"
@@ -15,6 +18,9 @@ struct MaterialExamination {
   /// The user gave the first set or the wavelengths: if the material refuses them this is no defect, and the InputError
   /// is passed on.
   bool is_asked_for = false;
+  bool may_refuse_all = false;  ///< the first set need not be valid
+  /// Called for each set that the plug-in refuses, with the reason; may be empty.
+  std::function<void(const ParameterSet&, const InputError&)> on_refusal = {};
 };
 
 /// Makes the material from each set of parameters and tests all laws on its BSDF. Sets that the plug-in refuses with an
