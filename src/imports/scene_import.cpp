@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/messages/counted.h"
 #include "imports/geometry_losses.h"
 #include "imports/model_reader.h"
 #include "scene/geometry/instance_writer.h"
@@ -285,7 +286,8 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   PlantGeometry geometry = plant_geometry(scene, to_scene(options));
   warn_of_steps(geometry, log);
   if (geometry.flat_nodes > 0)
-    log.warn({}, fmt::format("{} nodes are left out: their transforms have no inverse", geometry.flat_nodes));
+    log.warn({}, fmt::format("{} no inverse", counted(geometry.flat_nodes, "node is left out: its transform has",
+                                                      "nodes are left out: their transforms have")));
   const auto sheets = searched(geometry, single_sided(scene, options.single_sided), log);
   const std::string stem = stem_of(options.scene);
   PlantImages images(scene.images, options.model, stem + "-files", log);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/messages/counted.h"
 #include "image/image_file.h"
 #include "jobs/record/common_params.h"
 
@@ -38,9 +39,9 @@ Findings findings_of(const JobRun& run, const SceneInput& input) {
 }
 
 /// Returns "1 error", "2 errors" or "no errors".
-std::string counted(size_t count, const char* what) {
+std::string counted_or_no(size_t count, const char* what) {
   if (count == 0) return fmt::format("no {}s", what);
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  return counted(count, what);
 }
 
 /// The job: checks every scene, and reports all errors. The exit code is 1 if there is an error.
@@ -55,7 +56,7 @@ Result check(const JobRun& run) {
       result.errors.push_back(message);
     }
     const size_t count = problems.count();
-    result.text += fmt::format("{}: {}{}\n", name, counted(count, "error"),
+    result.text += fmt::format("{}: {}{}\n", name, counted_or_no(count, "error"),
                                warnings == 0 ? "" : ", " + counted(warnings, "warning"));
     if (count > 0) result.code = 1;
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "core/messages/counted.h"
 #include "jobs/record/common_params.h"
 #include "jobs/support/fit_directions.h"
 #include "leaf/fit/measured_spectra.h"
@@ -225,8 +226,8 @@ void warn_of_changes(const JobRun& run, const leaf::MeasuredSpectra& measured, c
     run.log().warn({},
                    fmt::format("{}the values of {} are in percent: they are divided by 100", of, measured.in_percent));
   if (measured.left_out > 0)
-    run.log().warn(
-        {}, fmt::format("{}{} rows are left out: beyond 360 to 2500 nm, or without a number", of, measured.left_out));
+    run.log().warn({}, fmt::format("{}{} left out: beyond 360 to 2500 nm, or without a number", of,
+                                   counted(measured.left_out, "row is", "rows are")));
 }
 
 /// Options of the reader, with the names that its messages use.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/messages/counted.h"
 #include "core/messages/excerpt.h"
 #include "core/parallel.h"
 #include "imports/scene_import.h"
@@ -129,7 +130,8 @@ Result import_model(const JobRun& run) {
                                summary.triangles[i] == 1 ? "" : "s");
   }
   if (summary.objects > 0)
-    result.text += fmt::format("{} instances of {} objects\n", summary.instances, summary.objects);
+    result.text +=
+        fmt::format("{} of {}\n", counted(summary.instances, "instance"), counted(summary.objects, "object"));
   result.text += fmt::format("{}: {:.4g} x {:.4g} x {:.4g} m\n", options.scene.string(), summary.size[0],
                              summary.size[1], summary.size[2]);
   result.facts = {{"width", summary.size[0]},

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/messages/counted.h"
 #include "jobs/support/display_params.h"
 #include "render/image_output.h"
 #include "render/parts/part_file.h"
@@ -58,12 +59,15 @@ Result merge(const JobRun& run) {
     write_part(args.text("part"), whole.header, whole.film);
   // Such samples count as the film's largest value or as black.
   const uint64_t lost = whole.film.not_finite();
-  if (lost > 0) run.log().warn({}, fmt::format("{} samples were too bright for the film, or not finite", lost));
+  if (lost > 0)
+    run.log().warn(
+        {}, fmt::format("{} too bright for the film, or not finite", counted(lost, "sample was", "samples were")));
   const SampleCount samples = sample_count(whole.film);
-  run.log().info(fmt::format("{}: {} part{}, {} samples per pixel, {:.2f} s of CPU",
-                             output ? output->path() : args.text("part"), parts.size(), parts.size() == 1 ? "" : "s",
-                             samples.least == samples.most ? fmt::format("{}", samples.most)
-                                                           : fmt::format("{} to {}", samples.least, samples.most),
+  run.log().info(fmt::format("{}: {}, {} per pixel, {:.2f} s of CPU", output ? output->path() : args.text("part"),
+                             counted(parts.size(), "part"),
+                             samples.least == samples.most
+                                 ? counted(samples.most, "sample")
+                                 : fmt::format("{} to {} samples", samples.least, samples.most),
                              whole.header.statistics.cpu_seconds));
   return {.facts = {{"least_samples", double(samples.least)},
                     {"most_samples", double(samples.most)},

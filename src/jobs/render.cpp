@@ -3,6 +3,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "core/messages/counted.h"
 #include "image/image_file.h"
 #include "jobs/record/common_params.h"
 #include "jobs/support/display_params.h"
@@ -257,9 +258,9 @@ class SceneRender {
     uint64_t lost = part.film.not_finite();  // those of plug-ins have been reported by name
     for (const auto& [fault, count] : statistics_.faults) lost -= std::min(lost, count);
     if (lost > 0)
-      log.warn({}, fmt::format("{} samples were too bright for the film or not finite: they count as its largest value "
-                               "or as black",
-                               lost));
+      log.warn({}, fmt::format("{} as its largest value or as black",
+                               counted(lost, "sample was too bright for the film or not finite: it counts",
+                                       "samples were too bright for the film or not finite: they count")));
     // Adaptive renders report noise; others report missing samples.
     if (task_.is_adaptive())
       report_noise(part, samples);
@@ -322,10 +323,11 @@ class SceneRender {
                                       {"foliar_ratio", film.foliar_ratio()},
                                       {"variance_in_worst_thousandth", error_tail}})
       table.add(name, value);
-    const std::string count = samples.least == samples.most ? fmt::format("{}", samples.most)
-                                                            : fmt::format("{} to {}", samples.least, samples.most);
+    const std::string count = samples.least == samples.most
+                                  ? counted(samples.most, "sample")
+                                  : fmt::format("{} to {} samples", samples.least, samples.most);
     run_.log().info(
-        fmt::format("{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), "
+        fmt::format("{}: {} per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), "
                     "loaded in {:.2f} s",
                     output, count, s.wall_seconds, s.cpu_seconds, us_per_path, rays_per_path, load_seconds_));
     run_.log().info(fmt::format("foliar ratio (camera samples that hit a leaf): {:.2f} %", 100 * film.foliar_ratio()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/messages/counted.h"
 #include "jobs/record/common_params.h"
 #include "leaf/table/mode_lookup.h"
 #include "leaf/table/mode_table_cache.h"
@@ -192,9 +193,8 @@ Result make_leaf_file(const JobRun& run, const Params& params) {
       make_leaf_file(LeafParams(params), std::move(request), run.session().pool(), run.log(), {});
   const std::string bytes = leaf::leaf_file_bytes(table);
   return write_table(run, bytes,
-                     fmt::format("{}: {}{} wavelengths x {} cells, {}", run.args.text("output"),
-                                 table.is_reciprocal ? "reciprocal, " : "", table.wavelengths_nm.size(), table.cells,
-                                 kilobytes(bytes.size())));
+                     fmt::format("{}: {}{}, {}", run.args.text("output"), table.is_reciprocal ? "reciprocal, " : "",
+                                 counted(table.wavelengths_nm.size(), "wavelength"), kilobytes(bytes.size())));
 }
 
 /// Throws InputError for a given parameter that has no effect on this type of table. `use` names the type that it

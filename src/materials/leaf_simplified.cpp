@@ -1,6 +1,7 @@
 #include <chrono>
 
 #include "core/material.h"
+#include "core/messages/counted.h"
 #include "leaf/table/table_cache.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
@@ -148,9 +149,9 @@ class LeafSimplified final : public Material {
         leaf::make_depth_table(leaf::TissueModel(request_.params), request_.theta_deg, wavelengths,
                                depth_axis(leaf_.depth(), preparation.wavelengths, kSharesDepthStep), preparation.pool);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} depths x {} angles, solve, {:.2g} s",
-                                     leaf_.specimen(), wavelengths.size(), table.depths.depths().size(),
-                                     table.theta_deg.size(), seconds.count()));
+    preparation.log.info(fmt::format(
+        "leaf table: {}, {} x {} x {}, solve, {:.2g} s", leaf_.specimen(), counted(wavelengths.size(), "wavelength"),
+        counted(table.depths.depths().size(), "depth"), counted(table.theta_deg.size(), "angle"), seconds.count()));
     return fixed ? leaf::TableLookup::for_lanes(table) : leaf::TableLookup::for_spectra(table);
   }
 
@@ -176,9 +177,9 @@ class LeafSimplified final : public Material {
   // The table of "tablefile".
   leaf::TableLookup read_lookup(const Preparation& preparation) const {
     const leaf::Table& table = *table_of_file_;
-    preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} angles{}", file_.path().string(),
-                                     table.wavelengths_nm.size(), table.theta_deg.size(),
-                                     table.has_equal_sides() ? ", both sides the same" : ""));
+    preparation.log.info(fmt::format(
+        "leaf table: {}, {} x {}{}", file_.path().string(), counted(table.wavelengths_nm.size(), "wavelength"),
+        counted(table.theta_deg.size(), "angle"), table.has_equal_sides() ? ", both sides the same" : ""));
     return lookup_of(leaf::at_wavelengths(table, file_wavelengths(table.wavelengths_nm, preparation.wavelengths,
                                                                   file_.where(), file_.path().string())),
                      preparation.wavelengths);

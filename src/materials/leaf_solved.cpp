@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "core/material.h"
+#include "core/messages/counted.h"
 #include "leaf/table/mode_lookup.h"
 #include "leaf/table/mode_table_cache.h"
 #include "leaf/table/mode_table_file.h"
@@ -131,8 +132,8 @@ class LeafSolved final : public Material {
       spectrum = std::move(*reciprocal);
     }
     leaf::ModeLookup table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
-    preparation.log.info(fmt::format("mode table: {}, {} wavelengths x {} cells, {} kB in memory", name,
-                                     file.columns.size(), spectrum.cells, table.bytes() / 1024));
+    preparation.log.info(fmt::format("mode table: {}, {}, {} kB in memory", name,
+                                     counted(file.columns.size(), "wavelength"), table.bytes() / 1024));
     return table;
   }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/messages/counted.h"
+
 namespace frond {
 namespace {
 
@@ -15,13 +17,9 @@ std::string_view verdict(const LawSummary& law) {
   return law.failures == 0 ? "holds" : "BROKEN";
 }
 
-std::string counted(size_t count, std::string_view one, std::string_view several) {
-  return fmt::format("{} {}", count, count == 1 ? one : several);
-}
-
 std::string tests_text(const LawSummary& law) {
   if (law.tests == 0) return "";
-  const std::string tests = counted(static_cast<size_t>(law.tests), "test", "tests");
+  const std::string tests = counted(law.tests, "test");
   return law.failures == 0 ? tests : fmt::format("{} of {}", law.failures, tests);
 }
 
@@ -147,7 +145,7 @@ std::string conform_text(const ConformReport& r) {
       "An error of the size called detectable is found with a probability of {:.0f} %.\n\n",
       r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "),
       counted(r.parameters.sets, "set of parameters", "sets of parameters"), samples_text(r), r.effort.seed,
-      counted(r.findings.size(), "test", "tests"), r.effort.false_alarm_rate, r.level, 100 * kPower);
+      counted(r.findings.size(), "test"), r.effort.false_alarm_rate, r.level, 100 * kPower);
   if (r.all_hold() && !is_there(r)) text += "The surface is invisible: it has no BSDF to test.\n\n";
   const double factor = detectable_factor(r.findings);
   text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", "", "law", "", "worst p", "");

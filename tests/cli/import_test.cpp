@@ -180,7 +180,7 @@ TEST_F(ImportCommand, GltfNodesAreInstances) {
                      R"({"name":"leaf","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.4,0.1,1],"metallicFactor":0}})",
                      embedded()));
   const Outcome o = imported("plant.gltf");
-  EXPECT_THAT(o.out, HasSubstr("2 instances of 1 objects"));
+  EXPECT_THAT(o.out, HasSubstr("2 instances of 1 object"));
   EXPECT_THAT(o.err, Not(HasSubstr("does not state")));
   // Columns of the first map: x = (2,0,0) turns to -z of glTF, which is +y of the scene; y is up.
   EXPECT_THAT(plant(), AllOf(HasSubstr("ObjectBegin \"blade\""), HasSubstr("ObjectInstance \"blade\"")));
@@ -202,7 +202,7 @@ TEST_F(ImportCommand, ManyInstancesAreATable) {
     nodes += fmt::format(",{{\"mesh\":0,\"translation\":[{},{},0]}}", i % 40 * 2, i / 40 * 2);
   }
   folder_.write("field.gltf", gltf("{\"children\":[" + children + "]}" + nodes, "{\"name\":\"leaf\"}", embedded()));
-  EXPECT_THAT(imported("field.gltf").out, HasSubstr("1500 instances of 1 objects"));
+  EXPECT_THAT(imported("field.gltf").out, HasSubstr("1500 instances of 1 object"));
   EXPECT_THAT(plant(), AllOf(HasSubstr("Shape \"instances\" \"string object\" \"blade\" \"string filename\" "
                                        "\"scene-files/blade.npy\""),
                              Not(HasSubstr("ObjectInstance"))));
@@ -353,7 +353,7 @@ TEST_F(ImportCommand, DerivedImagesAreMadeOnce) {
 TEST_F(ImportCommand, StretchedInstancesAreSearched) {
   folder_.write("plant.gltf", gltf(R"({"children":[1,2]},{"mesh":0,"scale":[1,1,1e6]},{"mesh":0,"scale":[1,1,1e6]})",
                                    "{}", embedded()));
-  EXPECT_THAT(imported("plant.gltf").out, HasSubstr("2 instances of 1 objects"));
+  EXPECT_THAT(imported("plant.gltf").out, HasSubstr("2 instances of 1 object"));
 }
 
 /// If a file cannot be put in its place, those that were there are there again, and no other.

@@ -27,7 +27,7 @@ TEST(TableCommand, WritesTheTableOfALeaf) {
   const std::string path = folder.name_of("t.csv");
   const Outcome o = table_command({"specimen=maize,thickness=0.0001", "--wavelengths", "608,551,455", "-o", path});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.err, HasSubstr("3 wavelengths x 181 angles, solve, error <= "));
+  EXPECT_THAT(o.err, HasSubstr("3 wavelengths x 181 angles, solve, error at most "));
   const leaf::Table table = leaf::read_table(path, {});
   EXPECT_THAT(table.wavelengths_nm, ElementsAre(608, 551, 455));
   EXPECT_THAT(table.theta_deg, SizeIs(181));
@@ -65,7 +65,7 @@ TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
   const std::string coarse = "tolerance=2e-3";
   const Outcome o = table_command({"leaf_solved,specimen=maize," + coarse, "--wavelengths", red, "-o", path});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.err, HasSubstr("3 wavelengths x "));
+  EXPECT_THAT(o.err, HasSubstr("3 wavelengths, BSDF error at most "));
   EXPECT_THAT(o.err, HasSubstr("kB in a render"));
   const auto measured = [&](const std::string& way) {
     return frond_command({"goniophotometer", "leaf_solved,specimen=maize," + coarse + "," + way, "--integrate",

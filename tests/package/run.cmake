@@ -33,7 +33,7 @@ run("${BUILD_DIR}/frond" describe --plugin "${WORK_DIR}/plugin_of_build/soil.so"
 set(frond "${prefix}/bin/frond")
 set(plugin --plugin "${WORK_DIR}/plugin/soil.so")
 run("${frond}" describe ${plugin} soil)
-run("${frond}" conform ${plugin} soil --sweep --samples 2000)
+run("${frond}" conform ${plugin} soil --samples 2000)
 run("${frond}" render ${plugin} "${example}/soil.pbrt" -o "${WORK_DIR}/soil.png" --quick)
 set(others --plugin "${WORK_DIR}/plugin/led.so" --plugin "${WORK_DIR}/plugin/blade.so")
 run("${frond}" render ${plugin} ${others} "${example}/grass.pbrt" -o "${WORK_DIR}/grass.png" --quick)

@@ -34,11 +34,16 @@ double smallest_found(double most, const Test& is_found) {
 
 }  // namespace
 
-/// The test finds a difference d if the estimate lies above the bound by the lower half of its confidence interval;
-/// with the probability `power` it is above d less the upper half.
+/// The test rejects above t standard errors. The mean lies above its lower quantile x, in standard errors, with the
+/// probability `power` (Cornish and Fisher 1938). The estimated error varies with the mean: its square by the skewness
+/// times x. Hence d = t sqrt(1 + skewness x) - x.
 double detectable_difference(const Estimate& a, double level, double power) {
-  return confidence_interval(a, normal_upper_quantile(1 - power)).high -
-         confidence_interval(a, normal_upper_quantile(level)).low;
+  const double se = a.standard_error();
+  if (!(se > 0)) return se;  // 0, or not a number
+  const double skewness = a.third_cumulant / (se * se * se), z = normal_upper_quantile(1 - power);
+  const double t = (a.mean - confidence_interval(a, normal_upper_quantile(level)).low) / se;
+  const double x = -z + skewness / 6 * (z * z - 1);
+  return se * std::max(0.0, t * std::sqrt(std::max(0.0, 1 + skewness * x)) - x);
 }
 
 double detectable_shortfall(int64_t trials, double low, double level, double power) {

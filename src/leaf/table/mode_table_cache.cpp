@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/log.h"
+#include "core/messages/counted.h"
 #include "leaf/solve/solver.h"
 #include "leaf/table/cache_file.h"
 #include "leaf/table/mode_table_file.h"
@@ -31,9 +32,10 @@ std::optional<ModeTable> parse(std::string_view text, std::string_view header, c
 }  // namespace
 
 std::string summary(const ModeTableRequest& request, std::string_view name, const ModeTable& spectrum) {
-  const std::string depths = request.depths.empty() ? "" : fmt::format(" x {} depths", request.depths.depths().size());
-  return fmt::format("mode table: {}, {} wavelengths{} x {} cells, BSDF error <= {:.1e} of white", name,
-                     request.wavelengths_nm.size(), depths, spectrum.cells, spectrum.error + request.tolerance / 2);
+  const std::string depths = request.depths.empty() ? "" : " x " + counted(request.depths.depths().size(), "depth");
+  return fmt::format("mode table: {}, {}{}, BSDF error at most {:.1e} of a white Lambertian surface's", name,
+                     counted(request.wavelengths_nm.size(), "wavelength"), depths,
+                     spectrum.error + request.tolerance / 2);
 }
 
 std::string describe(const ModeTableRequest& request) {

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/messages/counted.h"
 #include "leaf/table/mode_lookup.h"
 #include "system/file_bytes.h"
 
@@ -23,10 +24,6 @@ struct Word {
   std::string_view text;
   Location where;
 };
-
-std::string counted(size_t count, std::string_view what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 /// Splits a text into lines of words, without comments and empty lines.
 class Lines {

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "core/log.h"
+#include "core/messages/counted.h"
 #include "core/random.h"
 #include "leaf/table/cache_file.h"
 #include "leaf/table/table_file.h"
@@ -68,10 +69,10 @@ std::string describe(const TableRequest& request) {
 
 std::string summary(const TableRequest& request, std::string_view name, const Table& table) {
   const bool walks = request.method == TableMethod::monte_carlo;
-  return fmt::format("leaf table: {}, {} wavelengths x {} angles, {}{}, {} <= {:.1e}", name,
-                     table.wavelengths_nm.size(), table.theta_deg.size(), method_name(request.method),
-                     walks ? fmt::format(" {} rays", request.rays) : "", walks ? "standard error" : "error",
-                     table.error);
+  return fmt::format("leaf table: {}, {} x {}, {}{}, {} at most {:.1e}", name,
+                     counted(table.wavelengths_nm.size(), "wavelength"), counted(table.theta_deg.size(), "angle"),
+                     method_name(request.method), walks ? fmt::format(" {} rays", request.rays) : "",
+                     walks ? "standard error" : "error", table.error);
 }
 
 std::string seal(const Table& table, std::string_view header) { return with_checksum(to_csv(table, header)); }

@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "core/messages/counted.h"
+
 namespace frond {
 namespace {
 
@@ -165,7 +167,9 @@ GoniometerTable::GoniometerTable(const std::vector<GoniometerRow>& rows) {
     faces_[side].reflected = make_grid(reflected, rows.size(), where);
     faces_[side].transmitted = make_grid(transmitted, rows.size(), where);
   }
-  if (sorted.negative > 0) warning_ = fmt::format("{} values of f_per_sr below 0 count as 0", sorted.negative);
+  if (sorted.negative > 0)
+    warning_ = fmt::format(
+        "{} as 0", counted(sorted.negative, "value of f_per_sr below 0 counts", "values of f_per_sr below 0 count"));
   limit_energy();
   for (const size_t side : {0u, 1u})
     if (faces_[side].incidence.empty()) faces_[side] = faces_[1 - side];

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/messages/counted.h"
 #include "core/shape.h"
 #include "scene/math/affine_map.h"
 #include "scene/shapes/bilinear.h"
@@ -120,9 +121,9 @@ MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
     PlyMesh file = read_ply_bytes(bytes, path.string(), {origin[0], origin[1], origin[2]});
     warn_of_steps(p, file);
     if (file.ignored > 0)
-      p.warn("filename",
-             fmt::format("{} faces are neither triangles nor quadrilaterals and are left out, as in pbrt-v4",
-                         file.ignored));
+      p.warn("filename", fmt::format("{} left out, as in pbrt-v4",
+                                     counted(file.ignored, "face is neither triangle nor quadrilateral and is",
+                                             "faces are neither triangles nor quadrilaterals and are")));
     if (!file.unused.empty()) p.warn("filename", fmt::format("the file has data that are not used: {}", file.unused));
     return surfaces_of(std::move(file), placement);
   } catch (const InputError& error) {

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/log.h"
+#include "core/messages/counted.h"
 #include "core/random.h"
 #include "instruments/errors/flip.h"
 #include "study/compare/film_images.h"
@@ -167,8 +168,9 @@ std::vector<PairedRender> prepared(const Study& study, const std::vector<Candida
 
 void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate, const Log& log) {
   if (const uint64_t count = render.film(0).not_finite() + render.film(1).not_finite(); count > 0)
-    log.warn({}, fmt::format("{}: {} samples were too bright for a number, or none at all, and count as black",
-                             candidate.label, count));
+    log.warn({}, fmt::format("{}: {} as black", candidate.label,
+                             counted(count, "sample was too bright for a number, or none at all, and counts",
+                                     "samples were too bright for a number, or none at all, and count")));
 }
 
 /// Returns powers of two, and the last number requested.
