@@ -238,16 +238,20 @@ def describe(name: str | os.PathLike | None = None, markdown: bool = False, comm
     markdown: Print Markdown; without a name, for every plug-in.
     commands: Print Markdown for every command. Excludes markdown."""
 
-def conform(material, *, session: Session | None | None = None, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, map: str | os.PathLike | None = None, progress = None) -> object:
-    """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary:
-    "laws" {law: verdict}, "findings" a table, "all_hold" True if no law is broken.
+def conform(material, *, session: Session | None | None = None, given_only: bool = False, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, excess: float = 0.05, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, map: str | os.PathLike | None = None, progress = None) -> object:
+    """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary with
+    the facts of the command's JSON and "laws" {law: row}, "findings" a table, "text" the report. "all_hold" is True if no law was
+    found broken, "verdict" says at which parameters. report["laws"]["energy"]: the "largest" directional albedo with its
+    "largest_se" and where it was found; "detectable", the excess over 1 that would have been found there with a probability of
+    95 %. report["detectable_factor"]: the factor on f that would have been found.
 
     Test whether a material obeys the laws of scattering.
 
     Exit code 0: all laws hold; 2: a law is broken.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    sweep: Also test parameters that are not given, over their declared ranges.
+    given_only: Test the given parameters and defaults only. By default parameters that are not given are also tested at the ends of their ranges and at all choices, one at a time, with a tenth of the samples. Excludes sweep.
+    sweep: Test the ranges of parameters that are not given finely: with all samples, also corners, points inside, and 1000 in place of an infinite end.
     samples: Number of samples for each direction. Range: from 1000 to 67108864. Default: 20000.
     angles: Angles of wo from the normal, on both sides. Unit: degrees. Range: from 0 to 89.9999. Default: 0,30,60,80,89.
     wavelengths: Wavelengths, tested in groups of four. Unit: nm. Range: above 0. Default: 608,551,455.
@@ -255,12 +259,15 @@ def conform(material, *, session: Session | None | None = None, sweep: bool = Fa
     lossless: Claim that the material absorbs nothing with these parameters.
     reciprocal: Claim f(a, b) = f(b, a), in addition to the material's own claims.
     false_alarm_rate: Probability of reporting a broken law although all laws hold. Range: from 1e-12 to 0.5. Default: 1e-6.
+    excess: Excess of exitant over incident power that the law of energy must find with a probability of 95 %: it draws further samples, up to 50 times samples. 0: no further samples. Range: from 0 to 1. Default: 0.05.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
     map: Map of the directions of the worst finding: .svg or .png."""
 
-def bench(material: str | os.PathLike | Sequence[str | os.PathLike], with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, angles: float | Sequence[float] | str = '0,45,80', *, lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
-    """Time the calls of a material's BSDF, and measure the variance of its samples.
+def bench(material, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, *, session: Session | None | None = None, angles: float | Sequence[float] | str = '0,45,80', lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None) -> Result:
+    """Measures the cost of BSDFs. material, with_: text, or objects of `frond.Bsdf`.
+
+    Time the calls of a material's BSDF, and measure the variance of its samples.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
@@ -273,7 +280,7 @@ def bench(material: str | os.PathLike | Sequence[str | os.PathLike], with_: str 
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: File for Google Benchmark's JSON with frond's counters; - is standard output.
-    plot: Chart of variance against the cost of a hit: .svg or .png."""
+    plot: Chart of the CPU time to a standard error of 1 %: .svg or .png."""
 
 def export(material: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequence[str | os.PathLike | Scene], format: str | os.PathLike, output: str | os.PathLike, *, wavelengths: float | Sequence[float] | str | None = None, angles: float | Sequence[float] | str | None = None, view_angles: float | Sequence[float] | str | None = None, view_azimuths: float | Sequence[float] | str | None = None, rays: int | None = None, seed: int | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, ignore_unsupported: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write a material's BSDF, or a scene, as files for other programs.

@@ -83,7 +83,7 @@ Chart bench_chart(const std::vector<BenchMeasurement>& measurements) {
     for (const BenchMeasurement& r : measurements)
       if (r.lanes == lanes) x.include(time_of(r, r.worth.*worth).ns);
     if (x.is_empty()) x = {1, 1};
-    const double margin = 3 * std::pow(x.high / x.low, 0.12);  // for the names
+    const double margin = std::max(3.0, std::cbrt(x.high / x.low));  // for the names
     x = {x.low / margin, x.high * margin};
     std::vector<Tick> ticks;
     for (double ns = 1; ns <= x.high; ns *= 10)
@@ -91,7 +91,7 @@ Chart bench_chart(const std::vector<BenchMeasurement>& measurements) {
     if (ticks.size() > 5) std::erase_if(ticks, [](const Tick& t) { return std::lround(std::log10(t.value)) % 3 != 0; });
     Panel& panel = chart.panels.emplace_back(
         Panel{400, 84 + 56 * rows, worth == &SampleWorth::sky ? "under an overcast sky" : "under the sun",
-              Axis{"", x, true, 0, ticks}, Axis{"", {-0.6, rows - 0.4}, false, 0, {{-1, ""}}}});
+              Axis{"", x, true, 0, ticks}, Axis{"", {-0.6, rows - 0.4}, false, 0, {{-0.6, ""}}}});
     for (size_t m = 0; m < materials.size(); ++m) {
       std::vector<const BenchMeasurement*> row;
       for (const BenchMeasurement& r : measurements)

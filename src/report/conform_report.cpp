@@ -112,8 +112,10 @@ std::string scope_text(const ConformReport& r) {
   if (p.given_only) return given + " only";
   if (p.varied.empty())
     return fmt::format("{} only: there is no {}parameter with a range", given, p.are_defaults ? "" : "other ");
+  constexpr size_t kMostNamed = 6;
   return fmt::format("{} and {} of {}", given, p.are_swept ? "over the ranges" : "at the ends of the ranges",
-                     fmt::join(p.varied, ", "));
+                     p.varied.size() > kMostNamed ? counted(p.varied.size(), "parameter")
+                                                  : fmt::format("{}", fmt::join(p.varied, ", ")));
 }
 
 /// Returns what was not tested.
