@@ -231,12 +231,13 @@ def list(what: str | os.PathLike | None = None, *, progress = None, session: Ses
 
     what: What to list instead of plug-ins; specimens: values of "string specimen". One of specimens."""
 
-def describe(name: str | os.PathLike | None = None, markdown: bool = False, commands: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
+def describe(name: str | os.PathLike | None = None, markdown: bool = False, commands: bool = False, *, pages: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Print the parameters of a plug-in or a command: types, defaults, units and ranges.
 
     name: Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.
     markdown: Print Markdown; without a name, for every plug-in.
-    commands: Print Markdown for every command. Excludes markdown."""
+    commands: Print Markdown for every command. Excludes markdown.
+    pages: Folder for Markdown pages of every plug-in: plugins.md, which lists all, and a page for each kind with the parameters. Excludes markdown, commands."""
 
 def conform(material, *, session: Session | None | None = None, given_only: bool = False, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, excess: float = 0.05, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, map: str | os.PathLike | None = None, progress = None) -> object:
     """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary with

@@ -6,37 +6,34 @@
 #include <cstdio>
 
 namespace frond {
-namespace {
 
-/// Limits the rate of output.
-constexpr double kSecondsBetweenLines = 0.2;
+StatusLine::StatusLine(bool quiet, double seconds_between_lines)
+    : active_(!quiet), on_terminal_(isatty(STDERR_FILENO) != 0), last_(Clock::now()) {
+  constexpr double kOnTerminal = 0.2;
+  const std::chrono::duration<double> between(on_terminal_ ? kOnTerminal : seconds_between_lines);
+  between_ = std::chrono::duration_cast<Clock::duration>(between);
+}
 
-}  // namespace
-
-TerminalLine::TerminalLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) != 0) {}
-
-TerminalLine::~TerminalLine() { clear(); }
+StatusLine::~StatusLine() { clear(); }
 
 /// \x1b[K erases the line from the cursor on.
-void TerminalLine::clear() {
-  if (active_ && last_shown_ >= 0) std::fputs("\r\x1b[K", stderr);
-  last_shown_ = -1;
+void StatusLine::clear() {
+  if (has_text_ && on_terminal_) std::fputs("\r\x1b[K", stderr);
+  has_text_ = false;
 }
 
-bool TerminalLine::is_due(double seconds) {
-  if (!active_ || seconds - last_shown_ < kSecondsBetweenLines) return false;
-  last_shown_ = seconds;
-  return true;
-}
+bool StatusLine::is_due() const { return active_ && Clock::now() - last_ >= between_; }
 
-void TerminalLine::show(const std::string& text) {
-  std::fputs(("\r\x1b[K" + text).c_str(), stderr);
+void StatusLine::show(const std::string& text) {
+  last_ = Clock::now();
+  has_text_ = true;
+  std::fputs((on_terminal_ ? "\r\x1b[K" + text : text + '\n').c_str(), stderr);
   std::fflush(stderr);
 }
 
 /// "samples" are paths, which not all work consists of; the remaining time assumes a constant rate.
 void ProgressLine::update(double fraction, const RenderStatistics& s) {
-  if (!line_.is_due(s.wall_seconds)) return;
+  if (!line_.is_due()) return;
   const double left = fraction > 0 ? s.wall_seconds * (1 - fraction) / fraction : 0;
   if (s.paths == 0) {
     line_.show(fmt::format("{:5.1f} %  {:.0f} s left", 100 * fraction, left));

@@ -1,39 +1,44 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "render/progress.h"
 
 namespace frond {
 
-/// A status line on standard error, overwritten in place and erased at the end. Nothing is written if standard error is
-/// not a terminal or if `quiet`.
-class TerminalLine {
+/// Texts of progress on standard error. On a terminal: a line that is overwritten five times a second and erased at the
+/// end. Elsewhere, such as in a log file: a line every 30 s, which stays. Nothing is written if `quiet`.
+class StatusLine {
  public:
-  explicit TerminalLine(bool quiet);
-  ~TerminalLine();
-  TerminalLine(const TerminalLine&) = delete;
-  TerminalLine& operator=(const TerminalLine&) = delete;
+  /// `seconds_between_lines`: where standard error is no terminal.
+  explicit StatusLine(bool quiet, double seconds_between_lines = 30);
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
 
-  /// Whether 0.2 s have passed since the last text. `seconds`: time since the start.
-  bool is_due(double seconds);
+  /// Whether it is time for the next text.
+  bool is_due() const;
   void show(const std::string& text);
+  /// Erases the line from a terminal.
   void clear();
 
  private:
-  bool active_;
-  double last_shown_ = -1;
+  using Clock = std::chrono::steady_clock;
+  bool active_, on_terminal_, has_text_ = false;
+  Clock::duration between_;
+  Clock::time_point last_;  ///< text, or start
 };
 
 /// Progress of a render: percentage, rates, remaining time.
 class ProgressLine final : public Progress {
  public:
-  explicit ProgressLine(bool quiet) : line_(quiet) {}
+  explicit ProgressLine(bool quiet, double seconds_between_lines = 30) : line_(quiet, seconds_between_lines) {}
   void update(double fraction, const RenderStatistics& so_far) override;
   void finish() override { line_.clear(); }
 
  private:
-  TerminalLine line_;
+  StatusLine line_;
 };
 
 }  // namespace frond

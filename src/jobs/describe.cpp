@@ -1,15 +1,19 @@
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "jobs/record/command_line.h"
 #include "render/plugins.h"
 #include "scene/textures/normal_map.h"
+#include "system/new_files.h"
 
 namespace frond {
 
-// `frond describe`: documentation of plug-ins and commands, from their records. docs/plugins.md and docs/commands.md
-// are its output.
+// `frond describe`: documentation of plug-ins and commands, from their records. docs/plugins.md, the pages that it
+// lists and docs/commands.md are its output.
 
 namespace {
 
@@ -20,6 +24,11 @@ constexpr JobParam kParams[] = {
              {.type = "PLUGIN", .positional = true}),
     JobParam("markdown", flag, "Print Markdown; without a name, for every plug-in."),
     JobParam("commands", flag, "Print Markdown for every command.", {.excludes = "markdown"}),
+    JobParam(
+        "pages", text,
+        "Folder for Markdown pages of every plug-in: plugins.md, which lists all, and a page for each kind with the "
+        "parameters.",
+        {.type = "FOLDER", .path = PathUse::write, .excludes = "markdown,commands"}),
 };
 
 /// Returns the name of a parameter's type in scene files.
@@ -170,13 +179,76 @@ std::string markdown_of(const JobInfo& job) {
   return text + fmt::format("[Common parameters](#common-parameters): {}.\n\n", fmt::join(names, ", "));
 }
 
-/// Opening of docs/plugins.md.
-constexpr std::string_view kPluginsHead =
-    "# Materials, lights, shapes and other plug-ins\n\n"
-    "For authors of scene files: everything that a scene can name, with all parameters. Made by "
-    "`frond describe --markdown`; [gallery](gallery.md) has images. One of them on the terminal:\n\n"
-    "```sh\nfrond describe diffuse\n```\n\n"
-    "```\nmaterial \"diffuse\"\n  Lambertian reflector.\n  Source: Lambert 1760\n  ...\n```\n\n";
+/// Page of the plug-ins of some kinds.
+struct KindsPage {
+  std::string_view file, title, contents;
+  std::array<std::string_view, 4> kinds;  ///< as PluginInfo::kind; unused ones are empty
+};
+constexpr KindsPage kPages[] = {
+    {"plugins_materials.md", "Materials", "the leaf models and pbrt-v4's materials", {"material"}},
+    {"plugins_lights.md", "Lights", "lights, and surfaces that emit light", {"light", "area light"}},
+    {"plugins_shapes.md", "Shapes", "meshes, quadrics, curves and tables of instances", {"shape"}},
+    {"plugins_textures.md",
+     "Textures",
+     "numbers and spectra that vary over a surface",
+     {"float texture", "spectrum texture"}},
+    {"plugins_media.md", "Media", "participating media: mist, clouds, turbid canopies", {"medium"}},
+    {"plugins_cameras.md",
+     "Cameras and films",
+     "cameras, films, samplers and pixel filters",
+     {"camera", "film", "sampler", "pixel filter"}},
+    {"plugins_integrators.md",
+     "Integrators and wavelengths",
+     "light transport and spectral sampling",
+     {"integrator", "wavelengths"}},
+};
+
+/// Returns the fragment of the plug-in's heading in its page, as GitHub and MkDocs make it.
+std::string anchor(const PluginInfo& info) {
+  std::string text = fmt::format("{}-{}", info.kind, info.name);
+  std::ranges::replace(text, ' ', '-');
+  return text;
+}
+
+/// Returns the page of some kinds.
+std::string kinds_page(const KindsPage& page, const Registry& registry) {
+  std::string text = fmt::format(
+      "# {}\n\nFor authors of scene files: {}, with all parameters. Made by `frond describe`, as are the pages of all "
+      "[other plug-ins](plugins.md).\n\n",
+      page.title, page.contents);
+  for (const PluginInfo* info : all_plugins(registry))
+    if (std::ranges::find(page.kinds, info->kind) != page.kinds.end()) text += markdown_of(*info);
+  text.pop_back();
+  return text;
+}
+
+/// Returns the page that lists all plug-ins. The anchors of its entries are those of the headings of the other pages.
+std::string plugins_page(const Registry& registry) {
+  std::string text =
+      "# Materials, lights, shapes and other plug-ins\n\n"
+      "For authors of scene files: everything that a scene can name. The pages that these lists lead to have all "
+      "parameters; [gallery](gallery.md) has images. One of them on the terminal:\n\n"
+      "```sh\nfrond describe diffuse\n```\n\n"
+      "```\nmaterial \"diffuse\"\n  Lambertian reflector.\n  Source: Lambert 1760\n  ...\n```\n\n"
+      "Made by `frond describe --pages docs`.\n";
+  for (const KindsPage& page : kPages) {
+    text += fmt::format("\n## [{}]({})\n\n", page.title, page.file);
+    for (const PluginInfo* info : all_plugins(registry))
+      if (std::ranges::find(page.kinds, info->kind) != page.kinds.end())
+        text += fmt::format("- <a id=\"{0}\"></a>{1} [`{2}`]({3}#{0}): {4}\n", anchor(*info), info->kind, info->name,
+                            page.file, info->doc);
+  }
+  return text;
+}
+
+/// Writes the pages, all or none. Returns what to print.
+std::string write_pages(const std::string& folder, const Registry& registry) {
+  NewFiles files(folder);
+  for (const KindsPage& page : kPages) files.write(std::string(page.file), kinds_page(page, registry));
+  files.write("plugins.md", plugins_page(registry));
+  files.finish();
+  return fmt::format("The pages are listed in {}\n", (std::filesystem::path(folder) / "plugins.md").string());
+}
 
 /// Returns the page docs/commands.md.
 std::string commands_page() {
@@ -199,9 +271,14 @@ std::string commands_page() {
 Result describe(const JobRun& run) {
   const std::string name = run.args.text("name");
   const bool markdown = run.args.flag("markdown");
+  const std::string pages = run.args.text("pages");
+  if (!pages.empty() && !name.empty())
+    fail({}, "{} describes every plug-in: leave out \"{}\"", run.args.spelled("pages"), name);
   if (run.args.flag("commands")) return {.text = commands_page(), .is_requested = true};
-  if (name.empty() && !markdown) fail({}, "frond describe needs a name; frond list prints the names of plug-ins");
+  if (name.empty() && !markdown && pages.empty())
+    fail({}, "frond describe needs a name; frond list prints the names of plug-ins");
   const Registry registry = load_registry(run.context.options().plugins);
+  if (!pages.empty()) return {.text = write_pages(pages, registry)};
   std::vector<std::string_view> names;
   std::string found;
   const auto add = [&](bool is_chosen, const auto& info) {
@@ -218,7 +295,6 @@ Result describe(const JobRun& run) {
     fail({}, "no plug-in or command is named \"{}\"; {}", name,
          match.empty() ? "frond list prints all" : fmt::format("did you mean \"{}\"?", match));
   }
-  if (name.empty()) found = std::string(kPluginsHead) + found;
   return {.text = found, .is_requested = true};
 }
 

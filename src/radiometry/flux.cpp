@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <numbers>
@@ -369,6 +370,7 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
   constexpr uint64_t kBlocks = 256;
   RenderStatistics statistics;
   const double cpu = cpu_seconds();
+  const auto start = std::chrono::steady_clock::now();
   const StopScope stop(control.stop);
   const DeadlineScope deadline(control.deadline);
   for (uint64_t done = 0; done < paths && !control.is_over();) {
@@ -400,6 +402,7 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
     done += traced;
     statistics.paths = done;
     statistics.cpu_seconds = cpu_seconds() - cpu;
+    statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (control.progress) control.progress->update(double(done) / double(paths), statistics);
     if (after_round) after_round();
   }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,6 +37,22 @@ Interval shutter_times(const Params& camera, const CameraInfo& info) {
   return {std::min(open, close), std::max(open, close)};
 }
 
+/// Warns of an open time that changes the brightness of the image by more than two stops, unless the film states the
+/// exposure itself: other programs' scenes have short times for the blur of motion alone.
+void warn_of_open_time(const SceneSettings& description, double seconds, const Log& log) {
+  constexpr double kOfNote = 4;
+  if (!(seconds > 0) || (seconds >= 1 / kOfNote && seconds <= kOfNote)) return;
+  for (const ParsedParam& p : description.film.params)
+    if (p.name == "iso" || p.name == "exposuretime") return;
+  const double factor = seconds < 1 ? 1 / seconds : seconds;
+  log.warn(
+      description.camera.where,
+      fmt::format("the shutter is open for {:.3g} s: the exposure (open time in s x iso / 100) is {:.3g}, and the "
+                  "image {:.3g} times {} than with 1 s; \"float iso\" {:.4g} of the Film keeps the brightness, 100 "
+                  "states that it is meant",
+                  seconds, seconds, factor, seconds < 1 ? "darker" : "brighter", 100 / seconds));
+}
+
 Interval open_times(const SceneSettings& description, const Registry& registry, OptionResolver& resolver) {
   const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
   return shutter_times(Params(camera, description.camera, resolver), camera);
@@ -58,6 +76,7 @@ FilmSettings Scene::film_settings(const SceneSettings& description, const Regist
   check_film(film, info, description.film.where);
   const Interval open = open_times(description, registry, resolver);
   film.exposure *= open.max - open.min;
+  warn_of_open_time(description, open.max - open.min, log);
   return description.is_quick ? halved(film) : film;
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "image/image_file.h"
@@ -117,8 +119,24 @@ TEST_F(Commands, ListNamesEveryPluginAndDescribeItsParameters) {
 }
 
 TEST_F(Commands, TheDocumentedPluginsAreThoseOfThisBuild) {
-  EXPECT_EQ(frond_command({"describe", "--markdown"}).out, bytes_of(FROND_SOURCE_DIR "/docs/plugins.md"))
-      << "run: frond describe --markdown > docs/plugins.md";
+  const fs::path folder = path("pages"), docs = FROND_SOURCE_DIR "/docs";
+  ASSERT_EQ(frond_command({"describe", "--pages", folder.string()}).code, 0);
+  std::set<fs::path> written, documented;
+  std::string all;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    written.insert(entry.path().filename());
+    all += bytes_of(entry.path());
+    EXPECT_EQ(bytes_of(entry.path()), bytes_of(docs / entry.path().filename())) << "run: frond describe --pages docs";
+  }
+  for (const auto& entry : fs::directory_iterator(docs))
+    if (entry.path().filename().string().starts_with("plugins")) documented.insert(entry.path().filename());
+  EXPECT_EQ(written, documented);
+  // Each plug-in is in one of the pages, and where the list of all leads.
+  for (const PluginInfo* info : all_plugins(builtin_registry())) {
+    EXPECT_THAT(all, HasSubstr(fmt::format("## {} `{}`\n", info->kind, info->name)));
+    EXPECT_THAT(all, HasSubstr(fmt::format("{} [`{}`](plugins_", info->kind, info->name)));
+  }
+  EXPECT_THAT(frond_command({"describe", "--pages", folder.string(), "abm"}).err, HasSubstr("leave out \"abm\""));
 }
 
 TEST_F(Commands, TheDocumentedCommandsAreThoseOfThisBuild) {

@@ -101,8 +101,9 @@ def main():
     with tempfile.TemporaryDirectory() as copy:
         found = outputs(program, OUTPUTS.splitlines(), pathlib.Path(shutil.copytree(folder, copy, dirs_exist_ok=True)))
     (folder / "outputs.json").write_text(json.dumps(found, indent=0) + "\n")
-    for name in ("commands.md", "plugins.md"):
-        shutil.copy(ROOT / "docs" / name, folder)
+    shutil.copy(ROOT / "docs" / "commands.md", folder)
+    with open(folder / "plugins.md", "w") as page:
+        subprocess.run([program, "describe", "--markdown"], check=True, stdout=page)
     shutil.copy(ROOT / "python" / "frond" / "__init__.pyi", folder / "frond.pyi")
     for kind, sources in SOURCES.items():
         (folder / kind).mkdir()

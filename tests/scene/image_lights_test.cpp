@@ -19,8 +19,11 @@
 namespace frond {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr double kPiD = std::numbers::pi;
 
@@ -536,6 +539,25 @@ TEST(Cameras, OpenTimeIsAFactorOfTheFilm) {
       1e-6);
   EXPECT_NEAR(exposure("Camera \"orthographic\" \"float shutteropen\" 3", ""), 2, 1e-6) << "exchanged";
   EXPECT_THAT(error_of([] { Loaded("Camera \"realistic\" WorldBegin"); }), HasSubstr("\"realistic\""));
+}
+
+TEST(Cameras, AShortOpenTimeIsWarnedOfOnceUnlessTheFilmStatesItsExposure) {
+  const auto warnings = [](const std::string& camera, const std::string& film) {
+    const Loaded loaded("Camera \"perspective\" " + camera + " Film \"rgb\" " + film +
+                        " WorldBegin LightSource \"infinite\"");
+    return loaded.warnings;
+  };
+  const std::string short_time = "\"float shutteropen\" 0 \"float shutterclose\" 0.02";
+  EXPECT_THAT(warnings(short_time, ""),
+              ElementsAre(AllOf(HasSubstr("the shutter is open for 0.02 s"), HasSubstr("is 0.02"),
+                                HasSubstr("50 times darker"), HasSubstr("\"float iso\" 5000"))));
+  EXPECT_THAT(warnings("\"float shutterclose\" 10", ""),
+              ElementsAre(AllOf(HasSubstr("10 times brighter"), HasSubstr("\"float iso\" 10 "))));
+  EXPECT_THAT(warnings(short_time, "\"float iso\" 100"), IsEmpty());
+  EXPECT_THAT(warnings(short_time, "\"float iso\" 5000"), IsEmpty());
+  EXPECT_THAT(warnings(short_time, "\"float exposuretime\" 50"), IsEmpty());
+  EXPECT_THAT(warnings("\"float shutteropen\" .5", ""), IsEmpty());
+  EXPECT_THAT(warnings("", ""), IsEmpty());
 }
 
 TEST(Spectra, OfTablesThatEndWithinTheVisibleAreZeroBeyond) {

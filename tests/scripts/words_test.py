@@ -1,6 +1,6 @@
 """Pages, the scripts that write them, help, Python docstrings and public headers use the words of docs/glossary.md.
 
-docs/commands.md and docs/plugins.md are made of the texts of help, so that a refused word in an option is found there."""
+docs/commands.md and docs/plugins*.md are made of the texts of help, so that a refused word in an option is found there."""
 
 import pathlib
 import re
