@@ -59,18 +59,22 @@ quietly() {
   rm -f "$log"
 }
 
-# with_progress COMMAND...: like quietly, for a build by Ninja: on a terminal one line says how far it is.
+# with_progress COMMAND...: like quietly, for a build by Ninja. Says how far it is: on a terminal in one line, elsewhere in a line every
+# 30 s.
 with_progress() {
-  if [ ! -t 1 ]; then
-    quietly "$@"
-    return
-  fi
-  local log code=0 step all
+  local log code=0 step all shown=$SECONDS
   log=$(mktemp)
   (cd "$root" && "$@") 2>&1 | tee "$log" | sed -un 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 \2|p' |
-    while read -r step all; do [ "$all" = 0 ] || printf '\r  step %d of %d, %d %%\033[K' "$step" "$all" $((100 * step / all)); done ||
-    code=$?
-  printf '\r\033[K'
+    while read -r step all; do
+      [ "$all" = 0 ] && continue
+      if [ -t 1 ]; then
+        printf '\r  step %d of %d, %d %%\033[K' "$step" "$all" $((100 * step / all))
+      elif ((SECONDS - shown >= 30)); then
+        printf '  step %d of %d, %d %%\n' "$step" "$all" $((100 * step / all))
+        shown=$SECONDS
+      fi
+    done || code=$?
+  if [ -t 1 ]; then printf '\r\033[K'; fi
   [ "$code" = 0 ] || { tail -n 60 "$log" >&2; rm -f "$log"; exit "$code"; }
   rm -f "$log"
 }

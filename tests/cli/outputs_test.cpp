@@ -125,6 +125,14 @@ TEST_F(Outputs, AFileThatTheSceneReadsIsNotReplaced) {
   EXPECT_THAT(refusal(render({})), HasSubstr("the scene's Film would replace the input"));
 }
 
+TEST_F(Outputs, TheImageThatTheFilmNamesIsReplacedByTheNextRender) {
+  scene("scene.pbrt", "Material \"diffuse\"", "film.png");
+  for (const Words& more : {Words{}, Words{}, Words{"-o", "film.png"}}) {
+    const Outcome o = frond_command(render(more));
+    EXPECT_EQ(o.code, 0) << o.err;
+  }
+}
+
 TEST_F(Outputs, InputsAmongTheArgumentsAreNotReplaced) {
   folder_.write("a.csv", "x,y,z\n0,0,0\n");
   folder_.write("in.csv", kCsv);

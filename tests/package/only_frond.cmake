@@ -1,4 +1,5 @@
-# What the target frond alone has made can be installed, as README.md says of scripts/demo: the program with its man pages.
+# What the target frond alone has made can be installed, as README.md says of scripts/demo: the program with its man pages,
+# and what other programs are compiled with. --component runtime leaves out the latter, as docs/extending.md says.
 # A build folder of its own, whose object files are copied from BUILD_DIR and not compiled again.
 file(REMOVE_RECURSE "${WORK_DIR}")
 set(build "${WORK_DIR}/build")
@@ -34,5 +35,18 @@ run("${prefix}/bin/frond" --version)
 file(GLOB pages "${prefix}/share/man/man1/frond-render.1*")
 if(NOT pages OR NOT EXISTS "${prefix}/share/bash-completion/completions/frond")
   message(FATAL_ERROR "there is no man page or no completion in ${prefix}")
+endif()
+file(GLOB_RECURSE development RELATIVE "${prefix}" "${prefix}/*.h" "${prefix}/*.cmake")
+foreach(name "include/frond/render/session.h" "include/frond/core/material.h" "cmake/frond/frondConfig.cmake")
+  string(FIND "${development}" "${name}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "there is no ${name} in ${prefix}: ${development}")
+  endif()
+endforeach()
+run(${CMAKE_COMMAND} --install "${build}" --prefix "${prefix}-runtime" --component runtime)
+run("${prefix}-runtime/bin/frond" --version)
+file(GLOB_RECURSE development "${prefix}-runtime/*.h" "${prefix}-runtime/*.cmake")
+if(development)
+  message(FATAL_ERROR "--component runtime installs ${development}")
 endif()
 file(REMOVE_RECURSE "${WORK_DIR}")

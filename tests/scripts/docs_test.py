@@ -15,6 +15,14 @@ class Pages(unittest.TestCase):
         pages = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")}
         self.assertEqual(navigation, pages | {"README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"})
 
+    def test_the_site_loads_nothing_from_elsewhere(self):
+        settings = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+        self.assertIn("  - offline", settings)  # search without a server, by the script iframe-worker of ours
+        listed = re.findall(r"^ +- (docs/\S+\.(?:js|css))$", settings, re.M)
+        self.assertIn("docs/iframe-worker.js", listed)
+        self.assertEqual([name for name in listed if not (ROOT / name).is_file()], [])
+        self.assertNotRegex(settings, r"https?://")
+
     def test_links_lead_to_files(self):
         for page in [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "scenes").rglob("*.md")]:
             text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)

@@ -15,8 +15,11 @@
 namespace frond {
 namespace {
 
-void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::vector<std::filesystem::path>& files) {
+/// `output`: name of the parameter, if any, that names a file which the plug-in writes.
+void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::vector<std::filesystem::path>& files,
+               std::string_view output = "") {
   for (const ParsedParam& p : plugin.params) {
+    if (p.name == output) continue;
     const auto* words = std::get_if<std::vector<std::string>>(&p.values);
     if (!words) continue;
     for (const std::string& word : *words) {
@@ -42,9 +45,9 @@ uint64_t hash_words(std::string_view bytes, uint64_t hash) {
 
 std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths) {
   std::vector<std::filesystem::path> files;
-  for (const ParsedPlugin* plugin :
-       {&wavelengths, &scene.camera, &scene.film, &scene.sampler, &scene.integrator, &scene.filter})
+  for (const ParsedPlugin* plugin : {&wavelengths, &scene.camera, &scene.sampler, &scene.integrator, &scene.filter})
     add_files(*plugin, scene, files);
+  add_files(scene.film, scene, files, "filename");
   for (const auto& t : scene.textures) add_files(t.plugin, scene, files);
   for (const auto& m : scene.materials) add_files(m.plugin, scene, files);
   for (const auto& a : scene.area_lights) add_files(a, scene, files);
