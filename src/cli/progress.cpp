@@ -22,7 +22,10 @@ void StatusLine::clear() {
   has_text_ = false;
 }
 
-bool StatusLine::is_due() const { return active_ && Clock::now() - last_ >= between_; }
+bool StatusLine::is_due(double seconds) const {
+  return active_ && Clock::now() - last_ >= between_ &&
+         (on_terminal_ || std::chrono::duration<double>(seconds) >= between_);
+}
 
 void StatusLine::show(const std::string& text) {
   last_ = Clock::now();
@@ -33,7 +36,7 @@ void StatusLine::show(const std::string& text) {
 
 /// "samples" are paths, which not all work consists of; the remaining time assumes a constant rate.
 void ProgressLine::update(double fraction, const RenderStatistics& s) {
-  if (!line_.is_due()) return;
+  if (!line_.is_due(s.wall_seconds)) return;
   const double left = fraction > 0 ? s.wall_seconds * (1 - fraction) / fraction : 0;
   if (s.paths == 0) {
     line_.show(fmt::format("{:5.1f} %  {:.0f} s left", 100 * fraction, left));

@@ -17,8 +17,9 @@ class StatusLine {
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  /// Whether it is time for the next text.
-  bool is_due() const;
+  /// Whether it is time for the next text. `seconds`: age of the work; short works of a long job have no line that
+  /// stays.
+  bool is_due(double seconds) const;
   void show(const std::string& text);
   /// Erases the line from a terminal.
   void clear();

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
+#include <thread>
 
 namespace frond {
 namespace {
@@ -26,6 +28,15 @@ std::string written(bool quiet, double seconds_between_lines) {
 TEST(Progress, WritesWholeLinesWithoutATerminal) {
   EXPECT_EQ(written(false, 0),
             " 25.0 %  2.0 M samples  0.20 M rays/s  90 s left\n 50.0 %  2.0 M samples  0.10 M rays/s  60 s left\n");
+}
+
+TEST(Progress, WritesNothingOfShortWorksOfALongJob) {
+  ::testing::internal::CaptureStderr();
+  ProgressLine progress(false, 0.01);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  progress.update(0.5, so_far(0.001));
+  progress.finish();
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(Progress, WritesNothingOfShortJobsNorIfQuiet) {
