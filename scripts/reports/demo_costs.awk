@@ -29,6 +29,6 @@ function row(error) { printf "  %-8s  %-9.4f  %-22s  %s\n", scene, error, until(
 END {
   row(rms["abm", runs["abm"]])
   if (low["leaf_simplified"] > 0) row(sprintf("%.1g", bias["leaf_simplified"] / 2) + 0)
-  else printf "  %-8s  no bias of leaf_simplified is found: it is at most %.4f with 95 %% confidence\n", scene, high["leaf_simplified"]
+  else printf "  %-8s  the bias of leaf_simplified is at most %.4f (95 %% confidence)\n", scene, high["leaf_simplified"]
   printf "%s %.2f %.2f %.0f\n", scene, ray["abm"], ray["leaf_simplified"], (noise["abm"] / noise["leaf_simplified"]) ^ 2 >>rays
 }

@@ -39,7 +39,7 @@ class Costs(unittest.TestCase):
         abm = runs("abm", (0.08, 0.06, 0.04), 0.04, (0, 0, 0.001))
         (first, second), _ = self.table(*abm, *runs("leaf_simplified", (0.03, 0.02, 0.01), 0.01, (0, 0, 0.002)))
         self.assertEqual(first[2].split("  ")[-1].strip(), "at most 1.5 s")
-        self.assertIn("no bias of leaf_simplified is found: it is at most 0.0020", " ".join(second))
+        self.assertIn("the bias of leaf_simplified is at most 0.0020", " ".join(second))
 
 
 if __name__ == "__main__":
