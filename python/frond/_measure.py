@@ -108,23 +108,12 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 
     Bands with responses have names, in the column "band".
 
-    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][band]`,
-    "areas" `[instance]`, "wavelengths_nm", for bands with names "bands", and if there is PAR, "par_umol_m2_s" and
-    "par_umol_m2_s_se" `[instance]`: absorbed photons by leaf area."""
+    With by="instance" also the table of the instances, one row each: "instance", "area", for PAR "par_umol_m2_s" (absorbed photons
+    by leaf area), and for each wavelength or band "absorbed_550", "absorbed_nir", ... (shares of the incident light), each with a
+    column "_se" (standard error)."""
     result = FUNCTIONS["flux"](scene, wavelengths, by=by, **options)
-    if by is None:
-        return result.table
-    columns = result.columns["instances"]
-    bands = [name for name in columns if name.startswith("absorbed_") and not name.endswith("_se")]
-    import numpy
-    labels, rows = [name.removeprefix("absorbed_") for name in bands], result.columns["flux"]
-    nm = dict(zip(rows["band"], rows["wavelength_nm"])) if "band" in rows else {label: float(label) for label in labels}
-    return result.tables["flux"], {
-        "absorbed": numpy.stack([columns[name] for name in bands], axis=1),
-        "absorbed_se": numpy.stack([columns[name + "_se"] for name in bands], axis=1),
-        "areas": columns["area"], "wavelengths_nm": [nm[label] for label in labels],
-        **({"bands": labels} if "band" in rows else {}),
-        **{name: columns[name] for name in ("par_umol_m2_s", "par_umol_m2_s_se") if name in columns}}
+    tables = result.tables
+    return tables["flux"] if by is None else (tables["flux"], tables["instances"])
 
 
 @_with_keywords_of("goniophotometer")

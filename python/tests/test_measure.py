@@ -256,10 +256,11 @@ def test_flux_has_par_and_the_defaults_of_the_command(tmp_path):
     par = table[table["wavelength_nm"].isna()].set_index("quantity")
     assert abs(par["share"]["sum"] - 1) < 5 * par["share_se"]["sum"] + 1e-9
     table, leaves = frond.flux(tmp_path / "canopy.pbrt", "400:700:50", by="instance", paths=100_000)
-    assert abs(leaves["areas"][0] - numpy.pi / 4) < 0.01
+    assert isinstance(leaves, type(table)) and list(leaves)[:5] == ["instance", "area", "par_umol_m2_s", "par_umol_m2_s_se", "absorbed_400"]
+    assert abs(leaves["area"][0] - numpy.pi / 4) < 0.01
     # Photons that the disk absorbs, over its share of them: those of 1 m2 in full sun.
-    share = leaves["absorbed"][0].mean()
-    photons = leaves["par_umol_m2_s"][0] * leaves["areas"][0] / 4 / share
+    share = numpy.mean([leaves[f"absorbed_{nm}"][0] for nm in range(400, 701, 50)])
+    photons = leaves["par_umol_m2_s"][0] * leaves["area"][0] / 4 / share
     assert 1500 < photons < 2500 and leaves["par_umol_m2_s_se"][0] > 0
     for name, function in frond._jobs.FUNCTIONS.items():
         ours, of_command = (inspect.signature(f).parameters for f in (getattr(frond, name), function))
@@ -268,6 +269,17 @@ def test_flux_has_par_and_the_defaults_of_the_command(tmp_path):
             text = "x".join(map(str, default)) if isinstance(default, tuple) else str(default)
             assert default is None or text == str(of_command[word].default), (name, word)
     assert inspect.signature(frond.flux).parameters["wavelengths"].default == "450,550,670,800"
+
+
+def test_flux_until_the_error_of_leaves(tmp_path):
+    (tmp_path / "canopy.pbrt").write_text(CANOPY)
+    given = {"scene": tmp_path / "canopy.pbrt", "wavelengths": [550], "by": "instance"}
+    few = frond.run("flux", **given, paths=64).facts
+    assert few["instance_error_median"] > 0.05 and few["instance_error_largest"] >= few["instance_error_median"]
+    reached = frond.run("flux", **given, instance_error=0.003).facts
+    assert reached["instance_error_median"] <= 0.003 and reached["paths"] > 65536
+    with pytest.raises(frond.InputError, match="instance_error= needs by="):
+        frond.flux(tmp_path / "canopy.pbrt", instance_error=0.1)
 
 
 def test_flux_in_photons(tmp_path):
@@ -318,8 +330,8 @@ def test_bands_have_names(scene_text, tmp_path):
     brf = frond.brf(tmp_path / "canopy.pbrt", bands, zenith=[0], paths=64)
     assert list(brf["band"]) == ["par", "green"] and list(brf["wavelength_nm"]) == [550, 550]
     flux, leaves = frond.flux(tmp_path / "canopy.pbrt", bands + ",names=PAR,G", by="instance", paths=4096)
-    assert list(flux["band"])[:2] == ["PAR", "G"] == leaves["bands"]
-    assert leaves["wavelengths_nm"] == [550, 550] and leaves["absorbed"].shape[1] == 2
+    assert list(flux["band"])[:2] == ["PAR", "G"] and list(flux["wavelength_nm"])[:2] == [550, 550]
+    assert list(leaves) == ["instance", "area", "absorbed_PAR", "absorbed_PAR_se", "absorbed_G", "absorbed_G_se"]
     share = frond.goniophotometer("diffuse", bands, patches=(2, 2), rays=1000, illuminant="stdillum-D65")
     assert list(share["band"]) == ["par", "green"] and list(share["wavelength_nm"]) == [550, 550] and share["f"].shape == (1, 2, 2, 2)
     image = frond.loads(scene_text, wavelengths=bands).render(1)

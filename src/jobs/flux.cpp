@@ -6,13 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "jobs/support/flux_tables.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
 #include "jobs/support/time_limit.h"
 #include "radiometry/horizontal_irradiance.h"
-#include "radiometry/photons.h"
+#include "radiometry/instance_errors.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"
+#include "system/atomic_file.h"
+#include "system/file_uses.h"
 
 namespace frond {
 
@@ -35,8 +38,15 @@ constexpr JobParam kParams[] = {
         "Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the "
         "standard errors of all reflected and absorbed shares is below this; --paths is then not used."),
     kTimeLimitParam,
-    JobParam("by", text, "Measure the absorption of each instance of an object, one row each.",
-             {.choices = kBy, .decides = true}),
+    JobParam(
+        "by", text,
+        "Measure the absorption of each instance of an object, one row each; the table of shares is then in a file "
+        "beside that of --csv: leaves-flux.csv beside leaves.csv.",
+        {.choices = kBy, .decides = true}),
+    JobParam("instance-error", real,
+             "Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR "
+             "photons that each absorbs, or without PAR of the light in the worst band; --paths is then not used.",
+             {.range = kAboveZero, .relative = true, .needs = "by"}),
     JobParam("irradiance", text,
              "Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name "
              "of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the "
@@ -51,97 +61,6 @@ constexpr JobParam kParams[] = {
     kCheckpointParam,
     kResumeParam,
 };
-
-/// One quantity of the light budget, by band.
-struct Row {
-  std::string quantity, material;
-  const std::vector<MeanError>& shares;
-};
-
-/// Returns the rows of the budget, in the order of the tables.
-std::vector<Row> rows_of(const FluxMeasurement& measurement) {
-  std::vector<Row> rows{{"reflected", "", measurement.reflected}, {"transmitted", "", measurement.transmitted}};
-  for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"absorbed", m.name, m.absorbed});
-  rows.push_back({"sum", "", measurement.sum});
-  for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"incident", m.name, m.incident});
-  for (const FluxMeasurement::OfMaterial& m : measurement.materials)
-    rows.push_back({"uncollided", m.name, m.uncollided});
-  return rows;
-}
-
-/// Returns the share of PAR photons. Its standard error is an upper bound, because bands share their paths.
-MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeights& photons) {
-  MeanError sum;
-  for (size_t band = 0; band < shares.size(); ++band) {
-    if (photons.weights[band] == 0) continue;  // an error may be unknown there
-    sum.mean += photons.weights[band] * shares[band].mean;
-    sum.standard_error += photons.weights[band] * shares[band].standard_error;
-  }
-  return sum;
-}
-
-/// Table with one row for each quantity and band. Rows of PAR photons have no wavelength.
-Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
-  Table table{"flux"};
-  const auto add = [&table](const Row& row, const Band& band, const MeanError& share) {
-    table.add("quantity", row.quantity);
-    table.add("material", row.material);
-    add_band(table, band);
-    table.add("share", share);
-  };
-  for (const Row& row : rows_of(measurement)) {
-    for (size_t band = 0; band < measurement.bands.size(); ++band) add(row, measurement.bands[band], row.shares[band]);
-    if (photons) add(row, {std::numeric_limits<double>::quiet_NaN()}, share_of_photons(row.shares, *photons));
-  }
-  if (photons) std::ranges::find(table.columns, "wavelength_nm", &Column::name)->missing = "PAR";
-  return table;
-}
-
-/// Text table with one row for each quantity and one column for each band.
-std::string share_text(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
-  Table table{"flux"};
-  for (const Row& row : rows_of(measurement)) {
-    table.add("share", row.quantity);
-    table.add("material", row.material);
-    if (photons) table.add("PAR photons", share_of_photons(row.shares, *photons));
-    for (size_t band = 0; band < measurement.bands.size(); ++band)
-      table.add(heading_of(measurement.bands[band]), row.shares[band]);
-  }
-  return to_text(table);
-}
-
-/// Returns the column of an instance's absorption in a band: absorbed_550, absorbed_nir.
-std::string column_of(const Band& band) {
-  return "absorbed_" + (band.name.empty() ? fmt::format("{:g}", band.nm) : band.name);
-}
-
-/// Table with one row for each instance: area, absorbed photon flux (umol / (m2 s)), and absorbed shares of the
-/// incident light. It is built by whole columns, because there may be 1e8 instances.
-Table instance_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
-  const size_t bands = measurement.bands.size(), count = measurement.areas.size();
-  Table table{"instances"};
-  const auto add = [&](const std::string& name, const auto& value) {
-    std::vector<double> values(count);
-    for (size_t i = 0; i < count; ++i) values[i] = value(i);
-    table.columns.push_back({name, std::move(values)});
-  };
-  const auto add_measured = [&](const std::string& name, const auto& value) {
-    add(name, [&](size_t i) { return value(i).mean; });
-    add(name + "_se", [&](size_t i) { return value(i).standard_error; });
-  };
-  add("instance", [](size_t i) { return double(i + 1); });
-  add("area", [&](size_t i) { return double(measurement.areas[i]); });
-  if (photons)
-    add_measured("par_umol_m2_s", [&](size_t i) {
-      const MeanError share = share_of_photons(std::span(measurement.by_instance).subspan(i * bands, bands), *photons);
-      const double factor = photons->incident * measurement.target_area / double(measurement.areas[i]);
-      return MeanError{share.mean * factor, share.standard_error * factor};
-    });
-  for (size_t band = 0; band < bands; ++band)
-    add_measured(column_of(measurement.bands[band]),
-                 [&](size_t i) { return measurement.by_instance[i * bands + band]; });
-  return table;
-}
 
 /// Returns a callback that writes a checkpoint if the last one is older than the interval.
 std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& meter, const KeptFile& kept) {
@@ -159,17 +78,35 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
   };
 }
 
+/// Whether the paths are doubled until an error is small enough, and are not a fixed number.
+bool refines(const Arguments& args) { return args.given("rms") || args.given("instance-error"); }
+
+/// Returns the largest of the errors relative to their limits, --rms and --instance-error: at most 1 when both are
+/// met. Throws InputError if the instances have absorbed nothing: their error would never be met.
+double relative_to_limits(const JobRun& run, const FluxMeasurement& measurement,
+                          const std::optional<PhotonWeights>& photons) {
+  double largest = 0;
+  if (run.args.given("rms")) largest = measurement.error() / run.args.real("rms");
+  if (!run.args.given("instance-error")) return largest;
+  const InstanceErrors errors = instance_errors(measurement, photons);
+  if (errors.known == 0)
+    fail(scene_file(run.args),
+         "{}: the instances absorb no light, of {} paths: there is no error to reach; give a smaller {} around them",
+         run.args.spelled("instance-error"), measurement.paths, run.args.spelled("target"));
+  return std::max(largest, errors.median / run.args.real("instance-error"));
+}
+
 /// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
 std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& control, FluxMeter& meter,
-                                       const KeptFile* kept) {
+                                       const std::optional<PhotonWeights>& photons, const KeptFile* kept) {
   // A refinement starts with few paths and doubles them.
   constexpr uint64_t kFirst = 1 << 16;
-  const double rms = run.args.real("rms");
   // As in the BRF, each band needs some paths for its standard error.
   constexpr uint64_t kLeast = 32;
   const uint64_t least = kLeast * meter.scene().wavelengths().bands().size();
-  const RefineLimits limits{std::max(least, rms > 0 ? kFirst : uint64_t(run.args.count("paths"))), uint64_t{1} << 40,
-                            rms};
+  const bool is_refined = refines(run.args);
+  const RefineLimits limits{std::max(least, is_refined ? kFirst : uint64_t(run.args.count("paths"))), uint64_t{1} << 40,
+                            is_refined ? 1.0 : 0.0};
   std::function<void()> checkpoint;
   if (kept) {
     if (const auto path = kept->found(run.args.flag("resume"))) meter.resume(*path);
@@ -182,7 +119,7 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
         measurement.reset();
         if (meter.paths() < paths) meter.trace(paths - meter.paths(), run.session().pool(), control, checkpoint);
       },
-      [&] { return measurement.emplace(meter.read()).error(); });
+      [&] { return relative_to_limits(run, measurement.emplace(meter.read()), photons); });
   if (end != RefineEnd::stopped && meter.paths() == 0)
     fail(scene_file(run.args), "{}: the time limit ended before any light path was traced",
          run.args.spelled("time-limit"));
@@ -249,6 +186,12 @@ void explain_no_photons(const JobRun& run, std::span<const Band> bands) {
     run.log().info(needed);
 }
 
+/// Returns which option gives more paths: "raise --paths", or "lower --rms".
+std::string more_paths(const Arguments& args) {
+  if (!refines(args)) return "raise " + args.spelled("paths");
+  return "lower " + args.spelled(args.given("instance-error") ? "instance-error" : "rms");
+}
+
 /// Warns of materials that no path met.
 void warn_of_unmet(const JobRun& run, const FluxMeasurement& measurement) {
   std::vector<std::string> unmet;
@@ -256,30 +199,68 @@ void warn_of_unmet(const JobRun& run, const FluxMeasurement& measurement) {
     if (!m.is_met) unmet.push_back('"' + m.name + '"');
   if (!unmet.empty())
     run.log().warn({},
-                   fmt::format("no path met the material{} {}: {} shares are unknown; raise {}, or give a smaller {}",
+                   fmt::format("no path met the material{} {}: {} shares are unknown; {}, or give a smaller {}",
                                unmet.size() > 1 ? "s" : "", fmt::join(unmet, ", "), unmet.size() > 1 ? "their" : "its",
-                               run.args.spelled(run.args.given("rms") ? "rms" : "paths"), run.args.spelled("target")));
+                               more_paths(run.args), run.args.spelled("target")));
 }
 
-/// Returns the table of instances. It is printed as CSV unless a file is written, because it may be long.
-Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
+/// Warns of instances without an error: in no band a path was absorbed.
+void warn_of_unmet_instances(const JobRun& run, const FluxMeasurement& measurement) {
   const size_t bands = measurement.bands.size(), count = measurement.areas.size();
-  // An error is unknown in the bands of which no path was absorbed.
   size_t unmet = 0;
   for (size_t i = 0; i < count; ++i)
     unmet += std::ranges::all_of(std::span(measurement.by_instance).subspan(i * bands, bands),
                                  [](const MeanError& share) { return std::isnan(share.standard_error); });
   if (unmet > 0)
-    run.log().warn({}, fmt::format("{} of {} instances met no light path, or absorb none: their errors are unknown; "
-                                   "raise {}",
-                                   unmet, count, run.args.spelled(run.args.given("rms") ? "rms" : "paths")));
-  Result result;
-  result.tables.push_back(instance_table(measurement, photons));
-  measurement.by_instance = {};
-  if (run.args.given("csv") || run.args.given("json")) return result;
-  result.text = to_csv(result.tables[0], {});
+    run.log().warn({}, fmt::format("{} of {} instances met no light path, or absorb none: their errors are unknown; {}",
+                                   unmet, count, more_paths(run.args)));
+}
+
+std::string percent(double share) {
+  constexpr double kLarge = 10;  // nothing is known of what has such an error
+  return share > kLarge ? fmt::format("more than {:g} %", 100 * kLarge)
+                        : fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0);
+}
+
+/// Reports the errors of single instances, which are far larger than those of all together: in a warning if they are
+/// too large, or larger than --instance-error, else as information.
+void report_instance_errors(const JobRun& run, const FluxMeasurement& measurement, const InstanceErrors& errors) {
+  constexpr double kTooLarge = 0.1, kProposed = 0.05;
+  if (errors.known == 0) return;
+  const std::string option = run.args.spelled("instance-error");
+  const std::string text =
+      fmt::format("relative standard error of the {} that single instances absorb: median {}, largest {}", errors.light,
+                  percent(errors.median), percent(errors.largest));
+  const double asked = run.args.given("instance-error") ? run.args.real("instance-error") : kTooLarge;
+  if (errors.median <= asked) return run.log().info(text);
+  if (run.args.given("instance-error"))
+    return run.log().warn({}, fmt::format("{} {:g} was not reached; {}", option, asked, text));
+  const double paths = double(measurement.paths) * std::pow(errors.median / kProposed, 2);
+  run.log().warn(
+      {}, fmt::format("{}; {} {:g} continues until the median is {:g} %{}", text, option, kProposed, 100 * kProposed,
+                      errors.median < 1 ? fmt::format(", which takes about {:.2g} paths", paths) : ""));
+}
+
+/// Warns if the time limit ended the measurement before --rms or --paths was reached. That --instance-error was not is
+/// part of the report on instances.
+void warn_of_end(const JobRun& run, const FluxMeasurement& measurement) {
+  if (!run.args.given("instance-error") || run.args.given("rms"))
+    warn_of_time_limit(run, measurement.paths, measurement.error());
+}
+
+/// Name of the table of shares, which is written beside that of instances.
+constexpr const char* kShares = "flux";
+
+/// Returns the text for a terminal: the shares, and the instances unless a file has them. With --quiet only the
+/// instances, as CSV: requested data.
+void add_instances(const JobRun& run, const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons,
+                   Result& result) {
+  const Table& instances = *result.tables.insert(result.tables.begin(), instance_table(measurement, photons));
+  result.csv_tables = 2;
+  if (run.args.given("csv") || run.args.given("json")) return;
+  const bool is_quiet = run.args.flag("quiet");
+  result.text = is_quiet ? to_csv(instances, {}) : result.text + '\n' + to_text(instances);
   result.is_requested = true;
-  return result;
 }
 
 /// The job: traces light paths until the requested number or error is reached, with checkpoints.
@@ -289,6 +270,12 @@ Result flux(const JobRun& run) {
   const SpectrumPtr irradiance = named_irradiance(run);
   const bool is_by_instance = run.args.text("by") == "instance";
   if (!is_by_instance) warn_if_nothing_is_kept(run);
+  std::optional<PlannedOutput> beside;
+  if (const std::string csv = run.args.text("csv"); is_by_instance && !csv.empty() && csv != "-") {
+    const std::string path = csv_beside(csv, kShares);
+    beside.emplace("the table of shares beside " + run.args.spelled("csv"), path);
+    check_replaceable(path);
+  }
   const FluxRequest request{.target = target_of(run.args),
                             .period = period_of(run.args),
                             .wavelengths = wavelengths_text(run.args),
@@ -308,21 +295,21 @@ Result flux(const JobRun& run) {
   const auto bands = meter.scene().wavelengths().bands();
   if (!photons) explain_no_photons(run, bands);
   run.context.log().check();
-  auto measured = measure(run, control, meter, kept ? &*kept : nullptr);
+  auto measured = measure(run, control, meter, photons, kept ? &*kept : nullptr);
   if (!measured) {
     if (kept) kept->report_stop();
     return {.stopped = true};
   }
-  FluxMeasurement& measurement = *measured;
+  const FluxMeasurement& measurement = *measured;
   const double error = measurement.error();
   warn_of_unmet(run, measurement);
   const bool are_weighted = !bands.front().response.empty();
   const std::string light =
       run.args.given("irradiance") ? run.args.text("irradiance") : std::string(are_weighted ? kOfScene : kOfPhotons);
-  Result result =
-      is_by_instance ? by_instance(run, measurement, photons) : Result{.text = share_text(measurement, photons)};
-  result.tables.push_back(share_table(measurement, photons));
-  result.facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}};
+  Result result{
+      .tables = {share_table(measurement, photons)},
+      .facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}},
+      .text = share_text(measurement, photons)};
   if (photons) result.facts.push_back({"par_umol_m2_s", photons->incident});
   if (photons || are_weighted) result.facts.push_back({"irradiance", light});
   run.log().info(
@@ -330,7 +317,14 @@ Result flux(const JobRun& run) {
                   photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s), irradiance {}", photons->incident, light)
                   : are_weighted ? fmt::format("; bands are weighted by the irradiance {}", light)
                                  : ""));
-  warn_of_time_limit(run, measurement.paths, error);
+  warn_of_end(run, measurement);
+  if (!is_by_instance) return result;
+  warn_of_unmet_instances(run, measurement);
+  const InstanceErrors errors = instance_errors(measurement, photons);
+  report_instance_errors(run, measurement, errors);
+  result.facts.push_back({"instance_error_median", errors.median});
+  result.facts.push_back({"instance_error_largest", errors.largest});
+  add_instances(run, measurement, photons, result);
   return result;
 }
 

@@ -68,4 +68,14 @@ std::optional<PhotonWeights> PhotonWeights::of(std::span<const Band> bands, cons
   return result;
 }
 
+MeanError PhotonWeights::share(std::span<const MeanError> by_band) const {
+  MeanError sum;
+  for (size_t band = 0; band < by_band.size(); ++band) {
+    if (weights[band] == 0) continue;  // an error may be unknown there
+    sum.mean += weights[band] * by_band[band].mean;
+    sum.standard_error += weights[band] * by_band[band].standard_error;
+  }
+  return sum;
+}
+
 }  // namespace frond

@@ -6,6 +6,7 @@
 
 #include "core/spectrum.h"
 #include "core/wavelengths.h"
+#include "instruments/errors/statistics.h"
 
 namespace frond {
 
@@ -21,6 +22,9 @@ struct PhotonWeights {
   static std::optional<PhotonWeights> of(std::span<const Band> bands, const Spectrum& irradiance);
   /// Returns whether `of` returns weights.
   static bool are_covered_by(std::span<const Band> bands);
+  /// Returns the share of photons, from those by band. Its standard error is an upper bound, because bands share their
+  /// paths.
+  MeanError share(std::span<const MeanError> by_band) const;
 };
 
 }  // namespace frond

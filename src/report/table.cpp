@@ -127,17 +127,17 @@ std::string to_csv(const Table& table, const std::vector<std::string>& notes) {
 
 std::string to_text(const Table& table) {
   std::vector<std::vector<std::string>> shown;  // by column: the name, then the cells
+  std::vector<size_t> widths;
   for (const Column& c : table.columns) {
     if (c.only_data || (is_error(c.name) && table.find(c.name.substr(0, c.name.size() - 3)))) continue;
     auto& cells = shown.emplace_back(1, c.name);
     for (size_t row = 0; row < table.rows(); ++row) cells.push_back(cell(table, c, row));
+    widths.push_back(width(*std::ranges::max_element(cells, {}, width)));
   }
   std::string text;
   for (size_t line = 0; line <= table.rows(); ++line) {
-    for (const auto& cells : shown) {
-      const size_t most = width(*std::ranges::max_element(cells, {}, width));
-      text += "  " + std::string(most - width(cells[line]), ' ') + cells[line];
-    }
+    for (size_t i = 0; i < shown.size(); ++i)
+      text += "  " + std::string(widths[i] - width(shown[i][line]), ' ') + shown[i][line];
     text += '\n';
   }
   return text;

@@ -9,6 +9,7 @@
 #include "report/text_output.h"
 #include "system/atomic_file.h"
 #include "system/file_uses.h"
+#include "system/new_files.h"
 
 namespace frond {
 namespace {
@@ -56,11 +57,24 @@ std::list<PlannedOutput> planned_outputs(const Arguments& args) {
   return outputs;
 }
 
+/// Writes the first table to the file of --csv, and the others that have one to files beside it: all or none.
+void write_csv(const std::string& csv, const Result& result) {
+  const Table& first = result.tables.at(0);
+  if (result.csv_tables == 1 || csv == "-") return write_text(csv, to_csv(first, result.notes));
+  const std::filesystem::path path(csv);
+  NewFiles files(path.parent_path());
+  files.write(path.filename().string(), to_csv(first, result.notes));
+  for (size_t i = 1; i < result.csv_tables; ++i)
+    files.write(std::filesystem::path(csv_beside(path, result.tables.at(i).name)).filename().string(),
+                to_csv(result.tables[i], result.notes));
+  files.finish();
+}
+
 /// Writes --csv and --json.
 void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) {
   for (const JobParam& p : job.params) {
     if (p.path != PathUse::write || !run.args.given(p.name)) continue;
-    if (p.name == "csv") write_text(run.args.text(p.name), to_csv(result.tables.at(0), result.notes));
+    if (p.name == "csv") write_csv(run.args.text(p.name), result);
     if (p.name != "json") continue;
     const bool is_own = !result.json.empty();
     write_text(run.args.text(p.name), is_own ? result.json : to_json(result.notes, result.facts, result.tables));
@@ -192,6 +206,10 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
     }
   }
   return result;
+}
+
+std::string csv_beside(const std::filesystem::path& csv, std::string_view table) {
+  return (csv.parent_path() / fmt::format("{}-{}{}", csv.stem().string(), table, csv.extension().string())).string();
 }
 
 std::string material_text(const std::vector<std::string>& words) {

@@ -21,6 +21,7 @@ namespace frond {
 /// Result of a job, apart from the files that it has written.
 struct Result {
   std::vector<Table> tables = {};        ///< --csv writes the first one
+  size_t csv_tables = 1;                 ///< --csv writes so many, the others to files beside its own (csv_beside)
   std::vector<Fact> facts = {};          ///< single values
   std::vector<std::string> notes = {};   ///< comment lines of the CSV file: materials, conventions, provenance
   std::string text = {};                 ///< for a terminal
@@ -128,6 +129,9 @@ std::string identifying_command(const JobInfo& job, const Arguments& args);
 std::vector<std::string> absolute_words(const Arguments& args, std::span<const JobParam* const> params);
 
 // Helpers that jobs share.
+
+/// Returns the file of a further table beside that of --csv: leaves-flux.csv for the table "flux" beside leaves.csv.
+std::string csv_beside(const std::filesystem::path& csv, std::string_view table);
 
 /// Returns the material NAME[,parameter=value...], the only word; empty without words. Throws InputError if there are
 /// several, or if blanks separate the parameters.
