@@ -79,6 +79,7 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
   const Target target = request.target ? *request.target : default_target(scene, other ? silent_log() : session.log());
   check_target(scene, target);
   const std::optional<Vec3> sun = direction_to_sun(scene.lights());
+  if (sun) sun_zenith_deg_ = std::acos(std::clamp(double(sun->z), -1.0, 1.0)) * 180 / std::numbers::pi;
   description.camera = camera_of(request, target, scene, sun);
   description.camera_from_world = {};
   // The sensor is outside the scene, where no medium is.
@@ -112,6 +113,7 @@ BrfMeasurement BrfMeter::read(const Film& film) const {
   BrfMeasurement measurement{.views = request_.views, .bands = {}, .values = {}, .rows = {}};
   measurement.has_heavy_tails = has_heavy_tails_;
   if (is_hemispherical_) measurement.quantity = "HDRF";
+  measurement.sun_zenith_deg = sun_zenith_deg_;
   const auto bands = scene_.scene().wavelengths().bands();
   measurement.bands.assign(bands.begin(), bands.end());
   for (int view = 0; view < film.settings().width; ++view)

@@ -40,6 +40,7 @@ struct BrfMeasurement {
   /// Name of the quantity: "BRF" (bidirectional) if all light comes from one direction, else "HDRF"
   /// (hemispherical-directional), as under sun and sky.
   std::string_view quantity = "BRF";
+  std::optional<double> sun_zenith_deg = {};  ///< of the only sun, whose azimuth is 0; views at -zenith look from it
   /// True if standard errors are unreliable, because a few rare paths contribute much of the mean.
   bool has_heavy_tails = false;
   const MeanError& at(size_t view, size_t band) const { return values[view * bands.size() + band]; }
@@ -68,6 +69,7 @@ class BrfMeter {
   std::vector<double> white_;  ///< radiance of a white plane, band by band
   bool has_heavy_tails_ = false;
   bool is_hemispherical_ = false;  ///< light comes from more than one direction
+  std::optional<double> sun_zenith_deg_;
 };
 
 }  // namespace frond

@@ -61,7 +61,7 @@ struct ChartPoint {
 inline ChartPoint with_error(double x, double y, double error) { return {x, y, {y - error, y + error}}; }
 
 /// A curve, interrupted at points that are not finite, or a filled area. A series without points is an entry of the
-/// legend.
+/// legend. Few curves have labels at their ends, which are read without a legend.
 struct Series {
   std::string label, color;  ///< label: in the legend; empty: not in the legend
   double width = 1.5;        ///< of lines, pixels; 0: no line
@@ -71,6 +71,7 @@ struct Series {
   std::vector<ChartPoint> points = {};
   std::string text = {};  ///< annotation of the first point
   bool is_filled = false;
+  std::string end = {};  ///< label beside the last point, right of the panel; its second line is smaller
 };
 inline Series line(std::string label, std::string color, double width = 1.5, Dash dash = Dash::solid,
                    std::vector<ChartPoint> points = {}) {
@@ -84,8 +85,7 @@ struct Panel {
   double width, height;  ///< pixels, including titles and labels
   std::string title;
   Axis x, y;
-  std::string mirrored = {};  ///< label of an axis on the right that counts 1 - y; empty: none
-  bool is_map = false;        ///< x and y have one scale; no axes are drawn
+  bool is_map = false;  ///< x and y have one scale; no axes are drawn
   std::vector<Series> series = {};
 };
 

@@ -267,25 +267,40 @@ std::vector<Table> fit_tables(const FitReport& report) {
 
 namespace {
 
-/// Adds wide lines where the fitted curves are misfits: to be covered by the curves.
-void add_misfits(Panel& panel, const FitReport& report, double theta_deg, const Series& r, const Series& t) {
-  std::string label = fmt::format("off by more than {:.2g}", leaf::kMisfit);
+/// Adds wide lines where a fitted curve is a misfit: to be covered by the curve.
+void add_misfits(Panel& panel, const FitReport& report, bool is_t, const Series& fitted, double theta_deg) {
   for (const leaf::MisfitBand& band : report.result.misfits) {
-    if (band.theta_deg != theta_deg) continue;
-    Series wide = line(std::exchange(label, ""), "#f0b27a", 8);
-    for (const ChartPoint& p : (band.is_t ? t : r).points)
+    if (band.theta_deg != theta_deg || band.is_t != is_t) continue;
+    Series wide = line("", "#f0b27a", 8);
+    for (const ChartPoint& p : fitted.points)
       if (band.nm.contains(p.x)) wide.points.push_back(p);
     panel.series.push_back(wide);
   }
 }
 
-/// Adds the lowest R where it is above the measured R: to cover the curves.
+/// Adds the lowest R where it is above the measured R: to cover the curves. Bands of one wavelength are a mark.
 void add_lowest(Panel& panel, const FitReport& report, double theta_deg) {
-  std::string label = "lowest R of this structure";
-  for (const leaf::MisfitBand& band : report.result.misfits)
-    if (band.theta_deg == theta_deg && is_below_reach(band))
-      panel.series.push_back(line(std::exchange(label, ""), kSeriesColors[2], 2, Dash::dashed,
-                                  {{band.nm.min, band.lowest_r}, {band.nm.max, band.lowest_r}}));
+  for (const leaf::MisfitBand& band : report.result.misfits) {
+    if (band.theta_deg != theta_deg || !is_below_reach(band)) continue;
+    panel.series.push_back({"",
+                            kSeriesColors[2],
+                            2,
+                            Dash::dashed,
+                            Mark::square,
+                            2.5,
+                            {{band.nm.min, band.lowest_r}, {band.nm.max, band.lowest_r}}});
+  }
+}
+
+/// Returns entries of the legend for what is drawn without a label at its end.
+std::vector<Series> legend_of(const FitReport& report) {
+  std::vector<Series> entries{marks("measured", kSeriesColors[0], Mark::disk, 1.8)};
+  const auto& misfits = report.result.misfits;
+  if (!misfits.empty()) entries.push_back(line(fmt::format("off by more than {:.2g}", leaf::kMisfit), "#f0b27a", 8));
+  if (std::ranges::any_of(misfits, is_below_reach))
+    entries.push_back(
+        {"lowest R of this structure, with any absorption", kSeriesColors[2], 2, Dash::dashed, Mark::square, 2.5});
+  return entries;
 }
 
 }  // namespace
@@ -294,25 +309,29 @@ Chart fit_chart(const FitReport& report) {
   const auto all = distinct(report.request.measurements, &leaf::LeafMeasurement::theta_deg);
   if (all.size() > kSeriesColors.size())
     fail({}, "--plot: {} angles are more than the {} distinguishable colours", all.size(), kSeriesColors.size());
-  Panel panel = shares_panel("wavelength (nm)");
+  auto panels = shares_panels("wavelength (nm)");
   for (size_t a = 0; a < all.size(); ++a) {
-    const std::string of_angle = all.size() == 1 ? "" : fmt::format(" {:.6g}°", all[a]);
-    Series r = line("fitted" + of_angle, kSeriesColors[all.size() == 1 ? 1 : a], 2), t = line("", r.color, 2),
-           measured = marks("measured" + of_angle, kSeriesColors[0], series_mark(a), 1.8);
+    const char* color = kSeriesColors[(a + 1) % kSeriesColors.size()];
+    Series fitted = line("", color, 2), r = fitted, t = fitted, of_r = marks("", kSeriesColors[0], series_mark(a), 1.8),
+           of_t = of_r;
+    r.end = t.end = all.size() == 1 ? "fitted" : fmt::format("fitted, {:.6g}°", all[a]);
     for (size_t i = 0; i < report.result.fitted.size(); ++i) {
       const leaf::LeafMeasurement& m = report.request.measurements[i];
       if (m.theta_deg != all[a]) continue;
       r.points.push_back({m.lambda_nm, report.result.fitted[i].r});
-      t.points.push_back({m.lambda_nm, 1 - report.result.fitted[i].t});
-      if (m.r) measured.points.push_back({m.lambda_nm, *m.r});
-      if (m.t) measured.points.push_back({m.lambda_nm, 1 - *m.t});
+      t.points.push_back({m.lambda_nm, report.result.fitted[i].t});
+      if (m.r) of_r.points.push_back({m.lambda_nm, *m.r});
+      if (m.t) of_t.points.push_back({m.lambda_nm, *m.t});
     }
     for (Series* curve : {&r, &t}) std::ranges::stable_sort(curve->points, {}, &ChartPoint::x);
-    add_misfits(panel, report, all[a], r, t);
-    panel.series.insert(panel.series.end(), {r, t, measured});
-    add_lowest(panel, report, all[a]);
+    add_misfits(panels[0], report, false, r, all[a]), add_misfits(panels[1], report, true, t, all[a]);
+    panels[0].series.insert(panels[0].series.end(), {r, of_r}),
+        panels[1].series.insert(panels[1].series.end(), {t, of_t});
+    add_lowest(panels[0], report, all[a]);
   }
-  return {1, {panel}, fmt::format("{}: RMSE {:.4f}", report.source, report.result.rmse)};
+  set_range_of(panels);
+  for (Series& entry : legend_of(report)) panels[0].series.push_back(std::move(entry));
+  return {1, {panels[0], panels[1]}, fmt::format("{}: RMSE {:.4f}", report.source, report.result.rmse)};
 }
 
 }  // namespace frond

@@ -54,7 +54,7 @@ void PolarMap::add_circles(const std::array<double, 3>& radii) const {
 }
 
 Panel disk_panel(double size, std::string title) {
-  return {size + 28, size + 40, std::move(title), {"", {-1.05, 1.05}}, {"", {-1.05, 1.05}}, "", true};
+  return {size + 28, size + 40, std::move(title), {"", {-1.05, 1.05}}, {"", {-1.05, 1.05}}, true};
 }
 
 }  // namespace frond

@@ -7,9 +7,16 @@
 
 namespace frond {
 
-Panel shares_panel(std::string x_label) {
-  const Axis y{"reflectance R (from below)", {0, 1}, false, 0.1};
-  return {900, 540, "", {std::move(x_label)}, y, "transmittance T (from above)"};
+std::array<Panel, 2> shares_panels(const std::string& x_label) {
+  return {Panel{900, 290, "", {""}, {"reflectance R"}}, Panel{900, 300, "", {x_label}, {"transmittance T"}}};
+}
+
+void set_range_of(std::array<Panel, 2>& panels) {
+  Range range{0, 0};
+  for (const Panel& panel : panels)
+    for (const Series& s : panel.series)
+      for (const ChartPoint& p : s.points) range.include(p.y);
+  for (Panel& panel : panels) panel.y.range = {0, range.high > 0 ? std::min(1.0, 1.05 * range.high) : 1};
 }
 
 void check_shares_chart(size_t materials, size_t angles, size_t wavelengths) {
@@ -30,30 +37,34 @@ Chart shares_chart(const std::vector<LabelledMeasurement>& measurements) {
   const auto x_of = [&](const LabelledMeasurement& r) {
     return by_wavelength ? r.measurement.beam.lambda_nm : r.measurement.beam.theta_deg;
   };
+  const size_t materials = distinct(measurements, &LabelledMeasurement::material).size();
   const auto curve_of = [&](const LabelledMeasurement& r) {
     if (alone) return r.material;
-    return by_wavelength ? fmt::format("{}, {:.6g}°", r.material, r.measurement.beam.theta_deg)
-                         : fmt::format("{}, {}", r.material, label_of(r.measurement.beam));
+    const Beam& beam = r.measurement.beam;
+    const std::string light = by_wavelength ? fmt::format("{:.6g}°", beam.theta_deg) : label_of(beam);
+    return materials == 1 ? light : fmt::format("{}, {}", r.material, light);
   };
   const auto labels = distinct(measurements, curve_of);
-  check_shares_chart(labels.size() / std::min(angles, wavelengths), angles, wavelengths);
-  Panel panel = shares_panel(by_wavelength ? "wavelength (nm)" : "angle of incidence (degrees)");
+  check_shares_chart(materials, angles, wavelengths);
+  auto panels = shares_panels(by_wavelength ? "wavelength (nm)" : "angle of incidence (degrees)");
   // Few points are drawn as marks; many as lines and error bars only.
   const Mark mark = std::max(angles, wavelengths) <= 40 ? Mark::disk : Mark::none;
   for (size_t i = 0; i < labels.size(); ++i) {
-    Series r{labels[i], kSeriesColors[i], 1.5, {}, mark, 2.5}, t{"", r.color, 1.5, Dash::dashed, mark, 2.5};
+    Series r{"", kSeriesColors[(i + 1) % kSeriesColors.size()], 1.5, {}, mark, 2.5};
+    r.end = labels[i];
+    Series t = r;
     for (const LabelledMeasurement& l : measurements) {
       if (curve_of(l) != labels[i]) continue;
       const Estimate &up = l.measurement.reflectance, &down = l.measurement.transmittance;
       r.points.push_back(with_error(x_of(l), up.mean, up.standard_error()));
-      t.points.push_back(with_error(x_of(l), 1 - down.mean, down.standard_error()));
+      t.points.push_back(with_error(x_of(l), down.mean, down.standard_error()));
     }
     if (by_wavelength)  // bands are in any order
       for (Series* s : {&r, &t}) std::ranges::stable_sort(s->points, {}, &ChartPoint::x);
-    panel.series.insert(panel.series.end(), {r, t});
+    panels[0].series.push_back(r), panels[1].series.push_back(t);
   }
-  panel.series.insert(panel.series.end(), {line("R", "#808080"), line("1 − T", "#808080", 1.5, Dash::dashed)});
-  return {1, {panel}};
+  set_range_of(panels);
+  return {1, {panels[0], panels[1]}, materials == 1 && !alone ? measurements[0].material : ""};
 }
 
 }  // namespace frond

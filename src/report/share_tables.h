@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,14 @@ struct LabelledMeasurement {
   SpectrophotometerMeasurement measurement;
 };
 
-/// Returns a panel with axes of R from below and T from above, each from 0 to 1.
-Panel shares_panel(std::string x_label);
+/// Returns a panel of reflectance and, below it, one of transmittance.
+std::array<Panel, 2> shares_panels(const std::string& x_label);
+/// Sets the range of both, from 0 to the largest share: R and T are compared.
+void set_range_of(std::array<Panel, 2>& panels);
 
-/// Returns a chart of reflectance from below and transmittance from above, the convention for leaves: the area between
-/// them is absorbed. The x axis is wavelength or angle, whichever has more values; there is a colour for each material
-/// and each value of the other. Throws InputError if neither varies, or for more curves than colours.
+/// Returns a chart of reflectance and transmittance. The x axis is wavelength or angle, whichever has more values;
+/// there is a curve for each material and each value of the other. Throws InputError if neither varies, or for more
+/// curves than colours.
 Chart shares_chart(const std::vector<LabelledMeasurement>& measurements);
 
 /// Throws as shares_chart does; called before the measurement.

@@ -51,7 +51,7 @@ std::vector<std::string> captions_of(const Finding& finding) {
 Chart sphere_chart(const Finding& finding) {
   const SphereMap& map = *finding.map;
   const ColorScale scale = scale_of(map);
-  Panel panel{640, 366, " ", {"", {-2.2, 2.2}}, {"", {-1.1, 1.25}}, "", true};
+  Panel panel{640, 366, " ", {"", {-2.2, 2.2}}, {"", {-1.1, 1.25}}, true};
   const PolarMap front{panel, -1.12}, back{panel, 1.12};
   for (const auto& p : map.patches) {
     const auto [inner, outer] = std::minmax({radius_of(p.box.z0), radius_of(p.box.z1)});

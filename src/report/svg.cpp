@@ -6,7 +6,8 @@ namespace frond {
 namespace {
 
 constexpr double kCharacter = 7.8, kLegendLine = 20, kSample = 34;  // upper bound of a character's width in DejaVu Sans
-constexpr double kFar = 50;  // coordinates are clipped at this multiple of the panel's size
+constexpr double kLeader = 26;  // from a panel to the labels at the ends of its curves
+constexpr double kFar = 50;     // coordinates are clipped at this multiple of the panel's size
 constexpr const char *kStart = " text-anchor='start'", *kEnd = " text-anchor='end'", *kLarge = " font-size='15'",
                      *kSmall = " font-size='11'",
                      *kHalo = " font-size='11' stroke='#fff' stroke-width='3' paint-order='stroke'";
@@ -63,6 +64,13 @@ std::string text_at(double x, double y, std::string_view text, std::string_view 
   return fmt::format("<text x='{:.2f}' y='{:.2f}'{}>{}{}</text>\n", x, y, more, xml, room < 0 ? "…" : "");
 }
 
+/// Returns the first line and the second, if there is one.
+std::vector<std::string> lines_of(const std::string& text) {
+  const size_t end = text.find('\n');
+  if (end == std::string::npos) return {text};
+  return {text.substr(0, end), text.substr(end + 1)};
+}
+
 std::string upward_text(double x, double y, std::string_view text) {
   return text_at(0, 0, text, fmt::format(" transform='translate({:.2f} {:.2f}) rotate(-90)'", x, y));
 }
@@ -100,7 +108,7 @@ class PanelDrawing {
   PanelDrawing(const Panel& panel, double left, double top, size_t id)
       : p_(panel),
         left_(left + (panel.is_map ? 8 : 78)),
-        right_(left + panel.width - (panel.mirrored.empty() ? 20 : 66)),
+        right_(left + panel.width - std::max(20.0, room_of_ends(panel))),
         top_(top + (panel.title.empty() ? 12 : 32)),
         bottom_(top + panel.height - (panel.is_map ? 8 : 46)),
         x_(with_range(panel.x, panel.series, &ChartPoint::x)),
@@ -118,7 +126,7 @@ class PanelDrawing {
       if (!s.text.empty() && !s.points.empty())
         out += text_at(x_at(s.points[0].x), y_at(s.points[0].y) + 4, s.text, kHalo);
     }
-    return out;
+    return out + end_labels();
   }
 
  private:
@@ -153,10 +161,53 @@ class PanelDrawing {
     return stroke(s.width > 0 ? path_of(s) : "", s.color, s.width, s.dash) + stroke(bars, s.color, 1.2);
   }
 
+  /// Returns the width that the labels at the ends of curves need.
+  static double room_of_ends(const Panel& panel) {
+    constexpr double kMost = 0.45;  // of the panel
+    double room = 0;
+    for (const Series& s : panel.series)
+      for (const std::string& text : lines_of(s.end)) room = std::max(room, kLeader + 1.05 * width_of(text) + 8);
+    return std::min(room, kMost * panel.width);
+  }
+  /// Returns the labels at the ends of curves, in the order of these ends and moved apart where they would overlap,
+  /// each with a thin line to its curve.
+  std::string end_labels() const {
+    struct Label {
+      const Series* series;
+      double x, y, middle, height;  ///< x, y: end of the curve
+    };
+    std::vector<Label> labels;
+    for (const Series& s : p_.series) {
+      const auto last = std::find_if(s.points.rbegin(), s.points.rend(), [this](const ChartPoint& p) {
+        return std::isfinite(x_.position(p.x)) && std::isfinite(y_.position(p.y));
+      });
+      if (s.end.empty() || last == s.points.rend()) continue;
+      const double x = std::clamp(x_at(last->x), left_, right_), y = std::clamp(y_at(last->y), top_, bottom_);
+      labels.push_back({&s, x, y, y, lines_of(s.end).size() > 1 ? 31.0 : 17.0});
+    }
+    std::ranges::stable_sort(labels, {}, &Label::y);
+    for (size_t i = 1; i < labels.size(); ++i)
+      labels[i].middle =
+          std::max(labels[i].middle, labels[i - 1].middle + (labels[i - 1].height + labels[i].height) / 2);
+    double low = bottom_ + 8;  // lower end of the room that is left
+    for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
+      label->middle = std::min(label->middle, low - label->height / 2);
+      low = label->middle - label->height / 2;
+    }
+    std::string out;
+    for (const Label& l : labels) {
+      const auto lines = lines_of(l.series->end);
+      const double x = right_ + kLeader, y = l.middle + (lines.size() > 1 ? -2 : 5), room = room_of_ends(p_) - kLeader;
+      out += stroke(fmt::format("M{:.2f},{:.2f}L{:.2f},{:.2f}", l.x + 6, l.y, x - 5, l.middle), l.series->color, 0.6);
+      out += text_at(x, y, lines[0], fmt::format("{} fill='{}'", kStart, l.series->color), room);
+      if (lines.size() > 1) out += text_at(x, y + 14, lines[1], std::string(kStart) + kSmall + " fill='#555'", room);
+    }
+    return out;
+  }
+
   std::string axes() const {
     const double x = (left_ + right_) / 2, y = (top_ + bottom_) / 2;
-    std::string grid, texts = text_at(x, bottom_ + 37, x_.label) + upward_text(left_ - 62, y, y_.label) +
-                              upward_text(right_ + 56, y, p_.mirrored);
+    std::string grid, texts = text_at(x, bottom_ + 37, x_.label) + upward_text(left_ - 62, y, y_.label);
     for (const Tick& t : ticks_of(x_, (right_ - left_) / 70)) {
       grid += fmt::format("M{:.2f},{:.2f}V{:.2f}", x_at(t.value), top_, bottom_);
       texts += text_at(x_at(t.value), bottom_ + 17, t.text);
@@ -164,7 +215,6 @@ class PanelDrawing {
     for (const Tick& t : ticks_of(y_, (bottom_ - top_) / 42)) {
       grid += fmt::format("M{:.2f},{:.2f}H{:.2f}", left_, y_at(t.value), right_);
       texts += text_at(left_ - 6, y_at(t.value) + 5, t.text, kEnd);
-      if (!p_.mirrored.empty()) texts += text_at(right_ + 6, y_at(t.value) + 5, tick_text(1 - t.value), kStart);
     }
     return stroke(grid, "#dcdcdc", 0.7) + stroke(frame(), "#000000", 1) + texts;
   }

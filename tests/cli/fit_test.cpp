@@ -162,7 +162,9 @@ TEST_F(Fitting, NamesTheBandsThatItMisses) {
   const auto done = frond_command({"fit", folder_.write("dark.csv", dark).string(), "--json", json, "--plot", chart});
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.out, AllOf(HasSubstr("off by more than 0.01"), HasSubstr("lowest R")));
-  EXPECT_THAT(bytes_of(chart), AllOf(HasSubstr("off by more than 0.01"), HasSubstr("lowest R of this structure")));
+  EXPECT_THAT(bytes_of(chart), AllOf(HasSubstr("off by more than 0.01"), HasSubstr("lowest R of this structure"),
+                                     // Marks in the legend and in the panel, of a band of one wavelength too.
+                                     ::testing::ContainsRegex("d='M-.9-.9[^>]*#d55e00(.|\n)*d='M-.9-.9[^>]*#d55e00")));
   bool found = false;
   const auto j = nlohmann::json::parse(bytes_of(json));
   for (const auto& band : j["misfits"])

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -133,6 +134,28 @@ TEST_F(RadiometryJobs, BandsHaveNamesInAllOutputs) {
               HasSubstr("instance,area,absorbed_par,absorbed_par_se,absorbed_green,absorbed_green_se\n"));
 }
 
+/// The sun of kSun stands at 26.6 degrees. Bands of very different factors have a panel each, from 0.
+TEST_F(RadiometryJobs, TheChartShowsTheSunAndLinearAxes) {
+  more_ =
+      "Material \"diffuse\" \"spectrum reflectance\" [500 0.02 560 0.02 830 0.5 900 0.5]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [0 0 .1 1 0 .1 0 1 .1 1 1 .1]\n";
+  const auto plot = [this](const std::string& wavelengths, const std::string& lights) {
+    EXPECT_EQ(measured(lights, {"brf", "--zenith=-60:60:30", "--wavelengths", wavelengths, "--plot",
+                                folder_.name_of("plot.svg")})
+                  .code,
+              0);
+    std::ifstream file(folder_.name_of("plot.svg"));
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string two = plot("550,841.294", kSun);
+  EXPECT_THAT(two, ::testing::AllOf(HasSubstr(">550 nm<"), HasSubstr(">841 nm<"), HasSubstr(">sun<"),
+                                    HasSubstr(">view zenith angle (degrees), negative: sun’s side<"),
+                                    HasSubstr("clipPath id='p1'"), HasSubstr(">0.01<"), HasSubstr(">0.4<")));
+  const std::string near = plot("550.2,550.4", kSun);
+  EXPECT_THAT(near, ::testing::AllOf(HasSubstr(">550.2 nm<"), HasSubstr(">550.4 nm<"), Not(HasSubstr("id='p1'"))));
+  EXPECT_THAT(plot("550", kSky), ::testing::AllOf(Not(HasSubstr(">sun<")), Not(HasSubstr("negative"))));
+}
+
 TEST_F(RadiometryJobs, WavelengthsKeepTheirOrder) {
   EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", "700,400"}).out, ::testing::ContainsRegex("700 nm +400 nm\n"));
   EXPECT_THAT(measured(kSun, {"brf", "--zenith", "0", "--wavelengths", "700,400", "--csv", "-", "-q"}).out,
@@ -158,7 +181,7 @@ TEST_F(RadiometryJobs, AResultThatIsNotKeptIsAWarning) {
   more_ =
       "ObjectBegin \"leaf\"\nShape \"disk\" \"float radius\" 0.3\nObjectEnd\nTranslate 0.5 0.5 1\n"
       "ObjectInstance \"leaf\"\n";
-  EXPECT_EQ(measured(kSun, {"flux", "--by", "instance", "-q"}).err, "");  // is printed
+  EXPECT_THAT(measured(kSun, {"flux", "--by", "instance", "-q"}).err, Not(HasSubstr(lost)));  // is printed
 }
 
 /// A leaf of 1 over a ground of 2000.
@@ -209,7 +232,110 @@ TEST_F(RadiometryJobs, TheErrorOfAnInstanceWithoutLightIsUnknown) {
       "Translate 0.5 0.5 1\nObjectInstance \"leaf\"\nScale 1e-6 1e-6 1e-6\nObjectInstance \"leaf\"\n";
   const Outcome o = measured(kSun, {"flux", "--by", "instance"});
   EXPECT_THAT(o.err, HasSubstr("1 of 2 instances met no light path, or absorb none: their errors are unknown"));
-  EXPECT_TRUE(o.out.ends_with(",0,\n")) << o.out;
+  EXPECT_THAT(o.out, ::testing::ContainsRegex("\n +2  2.82743e-13 +0\n"));
+  EXPECT_TRUE(measured(kSun, {"flux", "--by", "instance", "-q"}).out.ends_with(",0,\n"));
+}
+
+/// Ten leaves of one hundredth of the target each: of 2000 paths about 20 meet a leaf, which absorbs 0.7 of the light.
+class RadiometryByInstance : public RadiometryJobs {
+ protected:
+  RadiometryByInstance() {
+    more_ = "ObjectBegin \"leaf\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 .1 0 0 0 .1 0 .1 .1 0]\nObjectEnd\n";
+    for (int i = 0; i < 10; ++i)
+      more_ += fmt::format("{}ObjectInstance \"leaf\"\n", i ? "Translate .1 0 0\n" : "Translate 0 .5 1\n");
+  }
+  std::string content(const std::string& name) {
+    std::ifstream file(folder_.name_of(name));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+};
+
+/// 1 / sqrt(20) is 22 %.
+TEST_F(RadiometryByInstance, TheErrorsOfSingleInstancesAreStated) {
+  const Outcome few = measured(kSun, {"flux", "--by", "instance", "--paths", "2000", "--json", "-"});
+  EXPECT_THAT(few.err, ::testing::ContainsRegex("RMS standard error 0.0[0-9]+\n"));
+  EXPECT_THAT(few.err,
+              ::testing::ContainsRegex(
+                  "warning: relative standard error of the light at 550 nm that single instances absorb: median "
+                  "(1[5-9]|2[0-9]) %, largest [23][0-9] %; --instance-error 0.05 continues until the median is "
+                  "5 %, which takes about [2-6][.0-9]*e.04 paths\n"));
+  const auto json = nlohmann::json::parse(few.out);
+  const double median = json["instance_error_median"], largest = json["instance_error_largest"];
+  std::vector<double> errors;
+  for (const auto& leaf : json["instances"])
+    errors.push_back(leaf["absorbed_550_se"].get<double>() / leaf["absorbed_550"].get<double>());
+  std::ranges::sort(errors);
+  EXPECT_DOUBLE_EQ(median, errors[5]);
+  EXPECT_DOUBLE_EQ(largest, errors[9]);
+  const Outcome many = measured(kSun, {"flux", "--by", "instance", "--paths", "40000", "--json", "-"});
+  EXPECT_THAT(many.err,
+              ::testing::ContainsRegex("\nrelative standard error of the light at 550 nm that single instances "
+                                       "absorb: median [4-6].[0-9] %, largest"));
+  EXPECT_THAT(measured(kSun, {"flux", "--by", "instance", "--paths", "40000", "--json", "-", "-q"}).err, "");
+}
+
+TEST_F(RadiometryByInstance, ContinuesUntilTheMedianErrorIsReached) {
+  const auto median = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"flux", "--by", "instance", "--json", "-", "-q"});
+    const Outcome o = measured(kSun, words);
+    EXPECT_EQ(o.err, "");
+    const auto json = nlohmann::json::parse(o.out);
+    return std::pair{json["instance_error_median"].get<double>(), json["paths"].get<double>()};
+  };
+  EXPECT_EQ(median({"--instance-error", "0.05"}).second, 65536);
+  const auto [reached, paths] = median({"--instance-error", "2%"});
+  EXPECT_LT(reached, 0.02);
+  EXPECT_GT(reached, 0.02 / 2);  // of half as many paths it is above 2 %
+  EXPECT_EQ(paths, 262144);
+  EXPECT_EQ(median({"--instance-error", "0.05", "--rms", "0.00009"}).second, 1 << 20);  // both
+  EXPECT_THAT(measured(kSun, {"flux", "--instance-error", "0.05"}).err, HasSubstr("--instance-error needs --by"));
+}
+
+TEST_F(RadiometryByInstance, AnErrorThatCannotBeReachedEnds) {
+  const Outcome late = measured(
+      kSun, {"flux", "--by", "instance", "--instance-error", "1e-6", "--time-limit", "0.3", "--csv", "-", "-q"});
+  EXPECT_EQ(late.code, 0);
+  EXPECT_THAT(late.err,
+              HasSubstr("--instance-error 1e-06 was not reached; relative standard error of the light at 550"));
+  EXPECT_THAT(late.err, Not(HasSubstr("paths were traced, not")));
+  more_ = "Material \"diffuse\" \"spectrum reflectance\" [300 1 2500 1]\n" + more_;  // absorb nothing
+  EXPECT_THAT(measured(kSun, {"flux", "--by", "instance", "--instance-error", "0.05"}).err,
+              HasSubstr("--instance-error: the instances absorb no light, of 65536 paths: there is no error to reach"));
+}
+
+/// --csv writes both tables or none.
+TEST_F(RadiometryByInstance, BothTablesAreKept) {
+  const std::vector<std::string> command{"flux", "--by", "instance", "--csv", folder_.name_of("leaves.csv")};
+  const Outcome o = measured(kSun, command);
+  EXPECT_THAT(o.out, ::testing::MatchesRegex("        share +material +550 nm\n +reflected(.|\n)*"));
+  EXPECT_THAT(o.out, Not(HasSubstr("instance")));  // is in the file
+  EXPECT_TRUE(content("leaves.csv").starts_with("instance,area,absorbed_550,absorbed_550_se\n1,0.01"))
+      << content("leaves.csv");
+  const std::string shares = content("leaves-flux.csv");
+  EXPECT_TRUE(shares.starts_with("quantity,material,wavelength_nm,share,share_se\nreflected,,550,0.")) << shares;
+  EXPECT_EQ(shares, measured(kSun, {"flux", "--csv", "-", "-q"}).out);
+  const Outcome printed = measured(kSun, {"flux", "--by", "instance", "--paths", "2000"});
+  EXPECT_THAT(printed.out,
+              ::testing::ContainsRegex("uncollided +.*\n\n  instance +area +absorbed_550\n +1 +0.01 +0.0"));
+
+  std::filesystem::remove(folder_.name_of("leaves.csv"));
+  std::filesystem::remove(folder_.name_of("leaves-flux.csv"));
+  std::filesystem::create_directory(folder_.name_of("leaves-flux.csv"));
+  EXPECT_THAT(measured(kSun, command).err, HasSubstr("leaves-flux.csv\": it is a folder"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.name_of("leaves.csv")));
+}
+
+TEST_F(RadiometryByInstance, TheFileBesideIsNoOtherFile) {
+  const auto csv = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"flux", "--by", "instance", "--csv", folder_.name_of(name)});
+    return measured(kSun, more).err;
+  };
+  EXPECT_THAT(csv("leaves.csv", {"--json", folder_.name_of("leaves-flux.csv")}),
+              HasSubstr("--json and the table of shares beside --csv write to the same file"));
+  folder_.write("sun-flux.spd", "300 1\n2500 1\n");
+  EXPECT_THAT(csv("sun.spd", {"--irradiance", folder_.name_of("sun-flux.spd"), "--wavelengths", "400:700:50"}),
+              HasSubstr("the table of shares beside --csv would replace the input"));
+  EXPECT_EQ(content("sun-flux.spd"), "300 1\n2500 1\n");
 }
 
 TEST_F(RadiometryJobs, AnErrorNamesTheLight) {

@@ -117,7 +117,10 @@ TEST_F(SpectrophotometerCommand, DrawsCharts) {
         0);
     EXPECT_THAT(bytes_of(path(name)), HasSubstr(name[2] == 's' ? "</svg>" : "PNG"));
   }
-  EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr("abm,specimen=soybean, 551 nm"));
+  // Both quantities go upward, and curves have their names at their ends.
+  EXPECT_THAT(bytes_of(path("a.svg")),
+              ::testing::AllOf(HasSubstr(">abm,specimen=soybean<"), HasSubstr(">551 nm<"), HasSubstr(">reflectance R<"),
+                               HasSubstr(">transmittance T<"), ::testing::Not(HasSubstr("1 − T"))));
 }
 
 TEST_F(SpectrophotometerCommand, MaterialsTakeSpectraAndMaterials) {

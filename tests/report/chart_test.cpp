@@ -25,7 +25,7 @@ std::vector<std::string> texts(const std::vector<Tick>& ticks) {
 }
 
 /// A panel from 0 to 1 each way.
-Chart chart_of(const Series& s) { return {1, {{400, 300, "", {"x (m)", {0, 1}}, {"y (s)", {0, 1}}, "", false, {s}}}}; }
+Chart chart_of(const Series& s) { return {1, {{400, 300, "", {"x (m)", {0, 1}}, {"y (s)", {0, 1}}, false, {s}}}}; }
 
 std::string svg_of(const Chart& chart) {
   const std::string svg = chart_svg(chart);
@@ -98,7 +98,7 @@ TEST(ChartSvg, ClipsWhatIsOutside) {
 
 TEST(ChartSvg, DrawsNothingOfEmptySeries) {
   for (const bool logarithmic : {false, true}) {
-    Chart chart{1, {{400, 300, "", {"x", {}, logarithmic}, {"y", {}, logarithmic}, "", false, {Series{}}}}};
+    Chart chart{1, {{400, 300, "", {"x", {}, logarithmic}, {"y", {}, logarithmic}, false, {Series{}}}}};
     EXPECT_THAT(svg_of(chart), Not(HasSubstr("nan")));
   }
   EXPECT_EQ(svg_of(Chart{}).find("NaN"), std::string::npos);
@@ -115,14 +115,31 @@ TEST(ChartSvg, HasALegendOfWhatHasALabel) {
   EXPECT_GT(std::stod(place[1]), 300);
 }
 
-TEST(ChartSvg, AMirroredAxisCountsFromAbove) {
-  Chart chart = chart_of(line("", "#000000"));
-  chart.panels[0].y.step = 0.3;
-  EXPECT_EQ(count(svg_of(chart), ">0\\.7<"), 0u);
-  chart.panels[0].mirrored = "T";
+/// Right of the axes, which leave room for them, in the order of the ends and without an overlap; none is in the
+/// legend.
+TEST(ChartSvg, LabelsTheEndsOfCurves) {
+  Chart chart = chart_of(line("", "#111111"));
+  auto& series = chart.panels[0].series;
+  series.clear();
+  for (const auto& [label, y] : {std::pair{"low", 0.02}, {"middle", 0.05}, {"high\nsecond", 0.9}, {"same", 0.05}}) {
+    series.push_back(line("", "#123456", 1, Dash::solid, {{0, 0.5}, {0.6, y}, {0.8, NAN}}));
+    series.back().end = label;
+  }
   const std::string svg = svg_of(chart);
-  EXPECT_THAT(svg, HasSubstr(">T</text>"));
-  EXPECT_EQ(count(svg, ">0\\.7<"), 1u);
+  const auto place = [&svg](const std::string& label) {
+    std::smatch found;
+    EXPECT_TRUE(std::regex_search(svg, found, std::regex("x='([0-9.]+)' y='([0-9.]+)'[^>]*>" + label + "<"))) << label;
+    return std::pair{std::stod(found[1]), std::stod(found[2])};
+  };
+  EXPECT_EQ(count(svg, "height='300'"), 1u);  // without a legend
+  EXPECT_GT(place("high").first, 300);
+  EXPECT_EQ(place("high").second + 14, place("second").second);
+  EXPECT_LT(place("second").second, place("middle").second);
+  EXPECT_LE(place("middle").second + 16, place("same").second);
+  EXPECT_LE(place("same").second + 16, place("low").second);
+  EXPECT_LT(place("low").second, 300 - 30);
+  EXPECT_EQ(count(svg, "<path d='M[0-9.]+,[0-9.]+L[0-9.]+,[0-9.]+' fill='none' stroke='#123456' stroke-width='0.6'"),
+            4u);
 }
 
 TEST(ChartSvg, IsTheSameEachTime) {
