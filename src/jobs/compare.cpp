@@ -3,6 +3,7 @@
 #include <chrono>
 #include <list>
 
+#include "jobs/record/command_line.h"
 #include "jobs/record/common_params.h"
 #include "scene/format/words.h"
 #include "study/choose/choice_report.h"
@@ -45,10 +46,10 @@ constexpr JobParam kParams[] = {
              {.type = "MATERIAL", .default_value = "abm,mode=weighted", .decides = true}),
     JobParam("rms", numbers, "Report the cheapest candidate with this RMS error.",
              {.type = "NUMBER", .range = {1e-6, 1}, .decides = true}),
-    JobParam(
-        "target", text,
-        "RMS errors of red, green and blue for speed-up (c): three numbers, or the paper's front, back or ambient.",
-        {.type = "R,G,B", .decides = true, .excludes = "relative"}),
+    JobParam("target", text,
+             "RMS errors of red, green and blue for the speed-up at equal error: three numbers, or the paper's front, "
+             "back or ambient.",
+             {.type = "R,G,B", .decides = true, .excludes = "relative"}),
     JobParam("relative", flag,
              "Report errors relative to the reference: RMS over pixels, divided by the reference's mean over "
              "them, in each channel; --rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.",
@@ -182,7 +183,7 @@ Result compare_models(const JobRun& run) {
   for (const double rms : request.rms)
     result.leaf_by_leaf += (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(run, rms, study, plan);
   result.scene = scene_name(args.text("scene"));
-  result.command = identifying_command(kCompareJob, args);
+  result.command = pasted_command(kCompareJob, args);
   result.machine = machine_description();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.cpu_seconds = cpu_seconds();

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "image/image_file.h"
+#include "jobs/record/command_line.h"
 #include "jobs/submit/engine.h"
 #include "jobs/support/render_task.h"
 #include "scene/format/words.h"

@@ -107,6 +107,23 @@ TEST_F(CompareCommand, TheReportNeedsNothingBesideIt) {
   }
 }
 
+/// No letters that only readers of the paper know, and a command with its folders and quotes.
+TEST_F(CompareCommand, IsReadWithoutThePaper) {
+  const Outcome o = compare({"--materials", "abm;it's:leaf_simplified", "--exposure=-1"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out,
+              AllOf(HasSubstr("equal samples  equal error  equal noise\n"),
+                    HasSubstr("speed-up over abm (its CPU time divided by the candidate's) for an equal number of "
+                              "samples;")));
+  const std::string html = file("index.html");
+  for (const std::string& text : {o.out, html.substr(0, html.find("<script"))})
+    EXPECT_THAT(text, AllOf(Not(HasSubstr("(a)")), Not(HasSubstr("(b)")), Not(HasSubstr("(c")), Not(HasSubstr("(d)")),
+                            Not(HasSubstr("manner"))));
+  const std::string scene = folder_.name_of("scene.pbrt");
+  EXPECT_THAT(html, HasSubstr("<code>frond compare " + scene + " --materials 'abm;it'\\''s:leaf_simplified'"));
+  EXPECT_THAT(html, HasSubstr(" --exposure=-1 "));
+}
+
 TEST_F(CompareCommand, ContinuesTheReferenceFromTheCache) {
   ASSERT_EQ(compare({"--materials", "abm"}).code, 0);
   EXPECT_EQ(json()["reference_samples_from_cache"], 0);

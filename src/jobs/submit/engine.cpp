@@ -1,10 +1,10 @@
 #include "jobs/submit/engine.h"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "jobs/record/command_line.h"
 #include "jobs/support/templates.h"
 
 namespace frond {
@@ -28,16 +28,6 @@ std::string openjd_literal(const std::string& word) {
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& word) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_-./=,:+@%").find(char(c)) != std::string_view::npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
-  return text + "'";
-}
 
 std::span<const Engine> engines() {
   static const Engine kAll[] = {

@@ -35,9 +35,6 @@ struct Engine {
 /// Returns all engines. This is the only list of them.
 std::span<const Engine> engines();
 
-/// Returns a word for a POSIX shell, quoted if necessary.
-std::string shell_word(const std::string& word);
-
 /// Returns the engine's command for the job in this folder.
 std::vector<std::string> command_of(const Engine& engine, const std::filesystem::path& folder);
 

@@ -7,11 +7,13 @@
 namespace frond::compare {
 namespace {
 
-/// Returns an empty series with the candidate's colour, dash and mark.
+/// Returns an empty series with the candidate's colour, dash and mark, and its label at the end.
 Series candidate_series(size_t candidate, std::string label) {
   constexpr size_t kSolid = 4;
   const Dash dash = candidate < kSolid ? Dash::solid : Dash::dashed;
-  return {std::move(label), kSeriesColors[candidate], 2, dash, series_mark(candidate)};
+  Series s{"", kSeriesColors[candidate], 2, dash, series_mark(candidate)};
+  s.end = std::move(label);
+  return s;
 }
 
 /// Returns points of CPU seconds and error in the axis's unit, with intervals. Points that a logarithmic axis cannot
@@ -32,7 +34,7 @@ Series frontier(const std::vector<Series>& curves) {
   std::vector<CostAndError> all;
   for (const Series& curve : curves)
     for (const ChartPoint& p : curve.points) all.push_back({p.x, p.y});
-  Series s = line("Pareto frontier: nothing measured beats it in both", "#d9d9d9", 9);
+  Series s = line("smallest error for the time (Pareto frontier)", "#d9d9d9", 9);
   for (const size_t i : pareto_frontier(all)) s.points.push_back({all[i].cost, all[i].error});
   return s;
 }
@@ -66,8 +68,8 @@ std::string rms_caption(const Comparison& c) {
   return fmt::format(
       "One point for each doubling of samples per pixel, from {} to {}; bars are 95 % intervals. Error is against what "
       "the reference converges to: its noise, {}, is taken out. A cross and the dotted line after it: from there "
-      "on noise is below the candidate’s bias, and more samples help little. A curve without one has no bias that "
-      "could be told from none.",
+      "on noise is below the candidate’s bias, and more samples help little. A candidate without a cross has no "
+      "significant bias.",
       c.candidates.front().runs.front().samples, c.candidates.front().runs.back().samples,
       c.request.error_unit().rounded(c.reference.noise[kAll][kTogether].root()));
 }
@@ -80,8 +82,8 @@ std::string flip_caption(const Comparison& c) {
 }
 
 constexpr const char* kBandsCaption =
-    "All pixels. Points: bias, with bars of 95 %. A bar without a point: a bias that cannot be told from none, up to "
-    "the bar’s end. Dotted: the noise that is left.";
+    "All pixels. Points: bias, with bars of 95 %. A bar without a point: no significant bias; it is at most the "
+    "bar’s upper end. Dotted: the noise that is left.";
 
 }  // namespace
 
@@ -95,12 +97,15 @@ std::optional<Chart> curves_chart(const Comparison& c, Measure measure) {
     for (const ChartPoint& p : s.points) x.include(p.x), y.include(p.y);
     auto plateau = plateau_of(c.candidates[i], measure);
     if (!plateau) continue;
-    s.label += fmt::format(": bias {}, noise below it from {} s", unit.rounded(plateau->y), figures(plateau->x, 2));
+    const std::string end =
+        fmt::format("{}\nbias {}, from {} s on", s.end, unit.rounded(plateau->y), figures(plateau->x, 2));
+    s.end.clear();
     plateau->y = unit.on_axis(plateau->y);
     x.include(plateau->x), y.include(plateau->y);
-    // A cross, and a dotted line to the end of the axis.
+    // A cross, and a dotted line to the label.
     plateaus.push_back(marks("", s.color, Mark::cross, 5.5, {*plateau}));
     plateaus.push_back(line("", s.color, 2, Dash::dotted, {*plateau, {1e300, plateau->y}}));
+    plateaus.back().end = end;
   }
   std::vector<Series> all{frontier(curves)};
   if (all[0].points.empty()) return {};
@@ -109,7 +114,7 @@ std::optional<Chart> curves_chart(const Comparison& c, Measure measure) {
                     time = fmt::format("CPU time of one {} × {} render (s)", c.width, c.height),
                     error = measure == Measure::flip ? "mean FLIP"
                                                      : fmt::format("RMS error, {} pixels ({})", pixels, unit_text);
-  return Chart{1, {{900, 520, "", {time, x.widened(), true}, {error, y.widened(), true}, "", false, all}}};
+  return Chart{1, {{900, 520, "", {time, x.widened(), true}, {error, y.widened(), true}, false, all}}};
 }
 
 std::optional<Chart> bands_chart(const Comparison& c) {
@@ -135,14 +140,13 @@ std::optional<Chart> bands_chart(const Comparison& c) {
   }
   if (y.is_empty()) return {};
   y = Range{std::max(y.low, y.high / 1e4), y.high}.widened();
-  series.push_back(
-      marks("bars: intervals of 95 %; without a mark the bias is not told from none", "#000000", Mark::bar, 5));
+  series.push_back(marks("bars: 95 % intervals; without a mark the bias is not significant", "#000000", Mark::bar, 5));
   const uint64_t samples = c.candidates[0].runs.back().samples;
   series.push_back(line(fmt::format("noise of one render of {} samples", samples), "#000000", 2, Dash::dotted));
   const Interval all = range_nm(c.channels);
   const Range nm{all.min - step_nm, all.max + step_nm};
   const std::string error = fmt::format("bias and noise ({})", unit.of_axis(c.channels));
-  return Chart{1, {{900, 520, "", {"wavelength (nm)", nm}, {error, y, true}, "", false, series}}};
+  return Chart{1, {{900, 520, "", {"wavelength (nm)", nm}, {error, y, true}, false, series}}};
 }
 
 std::vector<ReportChart> charts_of(const Comparison& c) {

@@ -99,7 +99,7 @@ std::string provenance(const Comparison& c) {
       false);
   for (const CandidateResult& s : c.candidates) {
     add(s.candidate.label, fmt::format("{} with wavelengths {}", s.candidate.text, s.wavelengths), true);
-    if (s.paper) add(s.candidate.label + " (b)", s.paper->candidate.text, true);
+    if (s.paper) add(s.candidate.label + ", equally complete paths", s.paper->candidate.text, true);
   }
   return list + "</dl>";
 }

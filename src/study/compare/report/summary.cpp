@@ -21,12 +21,16 @@ std::string summary_text(const Comparison& c) {
                                          fixed(e.bias.root_at(kZ95))));
     table.add(noise, fixed(e.noise.root()));
     table.add("FLIP", r.flip ? fmt::format("{:.4f}", *r.flip) : "-");
-    table.add("(a)", fmt::format("{:.2f}", v.equal_samples));
-    table.add("(c*)", told ? fmt::format("{:.2f}", v.equal_error_at_bias->value) : "-");
-    table.add("(d)", fmt::format("{:.2f}", v.equal_noise));
+    table.add("equal samples", fmt::format("{:.2f}", v.equal_samples));
+    table.add("equal error", told ? fmt::format("{:.2f}", v.equal_error_at_bias->value) : "-");
+    table.add("equal noise", fmt::format("{:.2f}", v.equal_noise));
   }
   return to_text(table) + (unit.is_relative() ? fmt::format("{}\n", kRelativeExplained) : "") +
-         "Speed-up by CPU time: (a) at equal samples, (c*) at an RMS of 1.5 times the bias, (d) at equal noise.\n";
+         fmt::format(
+             "Last three columns: speed-up over {} (its CPU time divided by the candidate's) for an equal number "
+             "of samples; until\nthe RMS error is 1.5 times the candidate's bias (-: it has none, or {} does not "
+             "reach that error); for equal noise.\n",
+             c.candidates.front().candidate.label, c.candidates.front().candidate.label);
 }
 
 }  // namespace frond::compare

@@ -30,7 +30,8 @@ std::string cutoff_text(const CandidateResult& s) {
   return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.left.value);
 }
 
-/// Returns the note on speed-up (b); empty if the scene's integrator cannot render in the paper's manner.
+/// Returns the note on the speed-up for equally complete paths; empty if the scene's integrator cannot render in the
+/// paper's manner.
 std::string paper_note(const Comparison& c) {
   std::vector<std::string> cutoffs;
   for (const CandidateResult& s : c.candidates)
@@ -38,9 +39,10 @@ std::string paper_note(const Comparison& c) {
   if (cutoffs.empty() || !c.candidates.front().paper) return "";
   const PaperTiming& baseline = *c.candidates.front().paper;
   return fmt::format(
-      "(b): light sampling does not see the surface lobe, and a path ends when the luminance of its attenuation falls "
-      "below a cutoff, such that at tree depth {:.1f} all leave the same ratio of rays unshot to shot, {:.1e}: {}. ",
-      baseline.depth, baseline.end.left.value, fmt::join(cutoffs, ", "));
+      "Equally complete paths, as Baranoski and Rokne rendered: light sampling leaves out the surface lobe, and a path "
+      "ends when the luminance of its throughput falls below a cutoff ({}), such that at a depth of {:.1f} hits all "
+      "leave the same share of rays untraced, {:.1e} of those traced. ",
+      fmt::join(cutoffs, ", "), baseline.depth, baseline.end.left.value);
 }
 
 std::string speed_table(const Comparison& c) {
@@ -51,36 +53,42 @@ std::string speed_table(const Comparison& c) {
     const CandidateRun& r = s.runs.back();
     table.add("candidate", s.candidate.label);
     table.add("CPU s\nper sample", fmt::format("{:.3g}", r.cost.cpu_seconds / double(r.samples)));
-    table.add("CPU s to\nmake ready", fmt::format("{:.2g}", s.setup_cpu_seconds));
+    table.add("CPU s to\nprepare", fmt::format("{:.2g}", s.setup_cpu_seconds));
     table.add("noise below\nbias from", plateau_text(s));
-    table.add("(a) equal\nsamples", ratio_text(v.equal_samples));
-    table.add("(b) paper’s\nmanner", v.paper ? ratio_text(*v.paper) : "–");
-    table.add("(c) equal\nerror", ratio_text(v.equal_error));
-    table.add("(c) at 1.5\n× bias", ratio_text(v.equal_error_at_bias));
-    table.add("(d) equal\nnoise", ratio_text(v.equal_noise));
+    table.add("equal\nsamples", ratio_text(v.equal_samples));
+    table.add("equally\ncomplete paths", v.paper ? ratio_text(*v.paper) : "–");
+    table.add("equal error\n(--target)", ratio_text(v.equal_error));
+    table.add("error of 1.5\n× its bias", ratio_text(v.equal_error_at_bias));
+    table.add("equal\nnoise", ratio_text(v.equal_noise));
   }
-  const std::string target = c.request.target     ? fmt::format("an RMS of {:g} / {:g} / {:g}", (*c.request.target)[0],
-                                                                (*c.request.target)[1], (*c.request.target)[2])
-                             : c.request.relative ? "an RMS that --target gives without --relative"
-                                                  : "an RMS that --target gives";
+  const std::string target = c.request.target
+                                 ? fmt::format("an RMS error of {:g}, {:g} and {:g}", (*c.request.target)[0],
+                                               (*c.request.target)[1], (*c.request.target)[2])
+                             : c.request.relative ? "the RMS error of --target, which --relative excludes"
+                                                  : "the RMS error of --target, which is not given";
   return to_html(
       table,
-      fmt::format("Speed-up: CPU time of {} over the candidate’s. {}(c): until all three channels are down to {}; and "
-                  "until the RMS of all is 1.5 times the candidate’s bias. (d): at the same variance. Tables from the "
-                  "cache cost little to make ready.",
-                  c.candidates.front().candidate.label, paper_note(c), target));
+      fmt::format(
+          "The last five columns are speed-ups: the CPU time of {} divided by the candidate’s. Equal samples: for "
+          "an equal number of samples per pixel. {}Equal error: until red, green and blue have {}. Error of "
+          "1.5 × its bias: until the RMS error of all channels is 1.5 times the candidate’s bias. Equal noise: "
+          "until the variance is the same. Preparing a candidate takes little time if its table is in the cache.",
+          c.candidates.front().candidate.label, paper_note(c), target));
 }
 
 constexpr const char* kTable2Note =
-    "As Table 2 of Baranoski and Rokne, who give for their simplified model 0.009 0.009 0.012 and 5.14× (front lit), "
-    "0.011 0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped images, "
-    "linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are "
-    "defined under the table of speed-ups.";
+    "The quantities of Table 2 in the paper of Baranoski and Rokne, who give for their simplified model 0.009 0.009 "
+    "0.012 "
+    "and 5.14× (front lit), 0.011 0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS "
+    "of "
+    "images clipped to 1, linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken "
+    "out. "
+    "The table of speed-ups below defines the last four columns.";
 
 /// Table 2 of the paper, for absolute errors of colours.
 std::string table_2(const Comparison& c) {
   if (c.channels.are_bands() || c.request.relative) return "";
-  Table table{fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up",
+  Table table{fmt::format("As the paper’s Table 2: RMS error of {} samples per pixel, and speed-up",
                           c.candidates.front().runs.back().samples)};
   for (size_t i = 0; i < c.candidates.size(); ++i) {
     const auto& e = c.candidates[i].runs.back().errors[kAll];
@@ -88,10 +96,10 @@ std::string table_2(const Comparison& c) {
     table.add("candidate", c.candidates[i].candidate.label);
     for (size_t k = kFirst; k < c.channels.luminance(); ++k)
       table.add("RMS\n" + c.channels.names[k], fmt::format("{:.4f}", e[k].clipped.root()));
-    table.add("(a) equal\nsamples", ratio_text(v.equal_samples));
-    table.add("(b) paper’s\nmanner", v.paper ? ratio_text(*v.paper) : "–");
-    table.add("(c) equal\nerror", ratio_text(v.equal_error));
-    table.add("(d) equal\nnoise", ratio_text(v.equal_noise));
+    table.add("equal\nsamples", ratio_text(v.equal_samples));
+    table.add("equally\ncomplete paths", v.paper ? ratio_text(*v.paper) : "–");
+    table.add("equal error\n(--target)", ratio_text(v.equal_error));
+    table.add("equal\nnoise", ratio_text(v.equal_noise));
   }
   return to_html(table, kTable2Note);
 }
@@ -128,14 +136,16 @@ std::string worst_band(const Comparison& c, const std::vector<RenderError>& e) {
 
 std::string error_note(const Comparison& c) {
   if (c.request.relative)
-    return fmt::format("{} The reference’s noise is taken out. Bias is what no number of samples takes away.",
-                       kRelativeExplained);
-  return fmt::format(
-      "{} The paper’s RMS is that of clipped images, of two renders that are both noisy; here the reference’s noise "
-      "is "
-      "taken out. Bias is what no number of samples takes away.",
-      c.channels.are_bands() ? "Radiance over that of a white diffuse surface of luminance 1 in the light of the scene."
-                             : "Linear SMPTE-C.");
+    return fmt::format(
+        "{} The reference’s noise is taken out. Bias is the error that remains with any number of samples.",
+        kRelativeExplained);
+  if (c.channels.are_bands())
+    return "Radiance over that of a white diffuse surface of luminance 1 in the light of the scene. The reference’s "
+           "noise "
+           "is taken out. Bias is the error that remains with any number of samples.";
+  return "Linear SMPTE-C. The reference’s noise is taken out. Bias is the error that remains with any number of "
+         "samples. "
+         "Clipped: of images clipped to 1, as in the paper of Baranoski and Rokne, whose two renders were both noisy.";
 }
 
 std::string error_table(const Comparison& c, Region region) {
