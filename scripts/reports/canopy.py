@@ -16,7 +16,10 @@ DIFFUSE = "leaf_lambert,bihemispherical=true"
 MODELS = ["leaf_lambert", DIFFUSE, "leaf_simplified", "leaf_solved"]
 REFERENCE = "leaf_solved"
 SIMPLER = [model for model in MODELS if model != REFERENCE]
-STYLES = {"leaf_lambert": "-", DIFFUSE: ":", "leaf_simplified": "--"}
+#: In the chart: colour, name, and where the name stands in the first panel (degrees, % of difference).
+STYLES = {"leaf_lambert": (charts.COLORS[2], "leaf_lambert", (10, 60)),
+          DIFFUSE: (charts.COLORS[4], "leaf_lambert,\nbihemispherical", (-4, 235)),
+          "leaf_simplified": (charts.COLORS[1], "leaf_simplified", (-42, -32))}
 ANGLES = ["spherical", "planophile", "erectophile"]
 INDICES = [1, 3, 5]
 SUNS = [30, 45, 70]
@@ -75,21 +78,24 @@ class Canopy:
 
 
 def chart(path, canopies):
-    """Relative difference of the BRF against the view zenith angle: a panel for each band, a curve for each model and leaf angle
-    distribution. The legend stands below the panels, where it covers no curve."""
-    of, panels = charts.figure(1200, 800, 2, 3, sharex=True)
+    """Relative difference of the BRF against the view zenith angle: a panel for each band, a curve for each model, of spherical
+    leaf angles. Panels of a row have one scale. The names stand beside the curves of the first panel."""
+    canopy = next(c for c in canopies if (c.angles, c.index, c.sun) == ("spherical", 3, 45))
+    of, panels = charts.figure(900, 620, 2, 3, sharex=True, sharey="row")
     for panel, band in zip(panels.flat, BANDS):
-        for canopy, model in itertools.product([c for c in canopies if c.index == 3 and c.sun == 45], SIMPLER):
-            mean, error = (100 * x[band] for x in canopy.difference(model))
-            panel.errorbar(mean.index, mean, error, color=charts.COLORS[1 + ANGLES.index(canopy.angles)], elinewidth=1, marker="o",
-                           markersize=2.5, linestyle=STYLES[model], label=f"{canopy.angles}, {model}")
         panel.axhline(0, color="#000000", linewidth=1)
+        panel.axvline(-canopy.sun, color="#888888", linewidth=1, linestyle="--")
+        for model in SIMPLER:
+            mean, error = (100 * x[band] for x in canopy.difference(model))
+            panel.errorbar(mean.index, mean, error, color=STYLES[model][0], elinewidth=1)
         panel.set(title=f"{band} nm", xticks=range(-60, 61, 30))
-    for panel in panels[-1]:
-        panel.set_xlabel("view zenith angle (degrees)")
+    for color, name, place in STYLES.values():
+        panels[0, 0].annotate(name, place, color=color)
+    panels[0, 0].annotate("sun", (-canopy.sun, 0), (3, 5), xycoords=("data", "axes fraction"), textcoords="offset points",
+                          color="#666666")
+    panels[-1, 1].set_xlabel("view zenith angle (degrees), negative: from the sun's side")
     for row in panels:
-        row[0].set_ylabel("BRF difference from leaf_solved (%)")
-    charts.legend(of, panels[0, 0], 3)
+        row[0].set_ylabel("BRF error (%)")
     charts.save(of, path)
 
 
@@ -108,8 +114,8 @@ codes use them, and one with the means under diffuse light (`bihemispherical`). 
 
 ![BRF differences from leaf_solved against view zenith angle, for six bands](images/canopy.svg)
 
-*Leaf area index 3, sun zenith angle 45°. Solid: `leaf_lambert`; dotted: with `bihemispherical`; dashed: `leaf_simplified`. Blue:
-spherical leaf angles; vermilion: planophile; green: erectophile. Bars: standard errors.*
+*Spherical leaf angles, leaf area index 3, sun zenith angle 45°. Bars: standard errors. The second table below has the range for
+other leaf angles.*
 
 {nadir}
 *View from the nadir: spherical leaf angles, leaf area index 3, sun zenith angle 30°. BRF with `leaf_solved`, and differences from it.*

@@ -87,15 +87,15 @@ def by_frond(name):
 
 def draw(path, name, fitted):
     spectra = pandas.DataFrame(fitted["spectra"])
-    of, [[panel]] = charts.figure(900, 600)
-    panel.plot(spectra.wavelength_nm, spectra.R_fitted, color=charts.COLORS[1], label="fitted")
-    panel.plot(spectra.wavelength_nm, 1 - spectra.T_fitted, color=charts.COLORS[1])
-    panel.plot(spectra.wavelength_nm, spectra.R, ".", color=charts.COLORS[0], markersize=3, label="measured")
-    panel.plot(spectra.wavelength_nm, 1 - spectra["T"], ".", color=charts.COLORS[0], markersize=3)
-    panel.set(title=f"{name}: RMSE {fitted['rmse']:.4f}", xlabel="wavelength (nm)", ylabel="reflectance R (upward)", ylim=(0, 1))
-    transmittance = panel.secondary_yaxis("right", functions=(lambda y: 1 - y, lambda y: 1 - y))
-    transmittance.set_ylabel("transmittance T (downward)")
-    charts.legend(of, panel, 2)
+    of, [panels] = charts.figure(900, 340, 1, 2, sharey=True)
+    for panel, quantity, what in zip(panels, "RT", ("reflectance R", "transmittance T")):
+        panel.plot(spectra.wavelength_nm, spectra[quantity + "_fitted"], color=charts.COLORS[1])
+        panel.plot(spectra.wavelength_nm, spectra[quantity], ".", color=charts.COLORS[0], markersize=3)
+        panel.set(title=what, xlabel="wavelength (nm)", ylim=(0, 0.6))
+    for row, (text, color) in enumerate((("dots: measured", charts.COLORS[0]), ("curve: fitted", charts.COLORS[1]))):
+        panels[1].annotate(text, (0.97, 0.93 - 0.07 * row), xycoords="axes fraction", ha="right", color=color)
+    panels[0].set_ylabel("share of the light")
+    of.suptitle(f"{name}: RMSE {fitted['rmse']:.4f}", fontsize=10.5)
     charts.save(of, path)
 
 

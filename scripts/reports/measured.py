@@ -7,6 +7,7 @@ import tempfile
 
 import numpy
 
+import charts
 import frond
 from tools import ROOT, arguments, machine, program, program_csv, table, write_section
 
@@ -38,6 +39,25 @@ def repetition(folder):
     return table(["table", ""] + [f"{i}°" for i in INCIDENCES], body)
 
 
+def chart(path, points):
+    """Relative variance of a sample against the time of a hit, by the label of a material. On a dashed line their product, the time
+    to a given noise, is the same."""
+    of, [[panel]] = charts.figure(640, 400)
+    for hue, (label, (time, variance)) in zip(charts.COLORS, points.items()):
+        panel.loglog(time, variance, "o", color=hue)
+        panel.annotate(label.replace("`", ""), (time, variance), (0, 8), textcoords="offset points", ha="center", color=hue)
+    times = numpy.array([30, 2000])
+    for product in (10, 30, 100, 300, 1000):
+        panel.plot(times, product / times, color="#aaaaaa", linewidth=1, linestyle="--", zorder=0)
+    panel.annotate("dashed: equal time to equal noise", (0.02, 0.04), xycoords="axes fraction", color="#666666",
+                   bbox={"color": "#ffffff", "pad": 1})
+    panel.set(xlabel="CPU time of a hit, four wavelengths (ns)", ylabel="relative variance of a sample under the sky",
+              xlim=times, ylim=(0.08, 1.5))
+    charts.plain_ticks(panel.xaxis, [50, 100, 200, 500, 1000, 2000])
+    charts.plain_ticks(panel.yaxis, [0.1, 0.2, 0.5, 1])
+    charts.save(of, path)
+
+
 def cost(folder, options):
     path = folder / "leaf.csv"
     path.write_text(program("goniophotometer", LEAF, "--angles", "0:180:10", "--wavelengths", "430:640:30", "--integrate", "--csv", "-"),
@@ -47,12 +67,12 @@ def cost(folder, options):
              "measured,filename=metal.bsdf": "`measured`, metal.bsdf",
              "conductor,reflectance=0.6,roughness=0.4,remaproughness=false": "`conductor`, the same roughness"}
     first, *others = names
-    chart = options.docs / "images" / "measured.svg"
-    chart.parent.mkdir(parents=True, exist_ok=True)
-    os.chdir(folder)  # the chart's names are short
+    os.chdir(folder)  # the names of materials are short
     result = frond.bench(first, with_=others, angles=45, lanes=4, samples=20000 if options.quick else 400000,
-                         repetitions=3 if options.quick else 10, plot=chart)
+                         repetitions=3 if options.quick else 10)
     times, worth = (result.tables[name].set_index("material") for name in ("times", "worths"))
+    chart(options.docs / "images" / "measured.svg",
+          {label: (times.hit_ns[name], worth.sky_variance[name] / worth.sky[name] ** 2) for name, label in names.items()})
     body = [[label, *(f"{times[c][name]:.0f}" for c in ("sample_ns", "f_ns", "pdf_ns", "hit_ns")),
              f"{worth.sky_variance[name] / worth.sky[name] ** 2:.3f}"] for name, label in names.items()]
     return table(["material", "`sample`, ns", "`f`, ns", "`pdf`, ns", "hit, ns", "relative variance under the sky"], body)
