@@ -230,7 +230,7 @@ def f_against_sample(report):
     for material in ("abm", "abm,mode=weighted", "abm,specimen=maize", "abm,incident=light", "leaf_solved",
                      "leaf_solved,specimen=maize", "leaf_solved,incident=light", "leaf_simplified",
                      "leaf_simplified,incident=light", "diffusetransmission"):
-        for name, law in frond.conform(material, samples=int(float(samples)))["laws"].items():
+        for name, law in frond.conform(material, samples=int(float(samples)), given_only=True)["laws"].items():
             if name in ("sampling", "unbiasedness", "energy") and "worst_p" in law:
                 p = f"{law['worst_p']:.2g}" if law["tests"] else "–"
                 body.append([f"`{material}`", name, int(law["tests"]), p, law["verdict"]])

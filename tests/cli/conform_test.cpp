@@ -86,6 +86,13 @@ TEST(Conform, FivePercentTooBrightIsFoundWithoutOptions) {
                            HasSubstr("\nBroken: energy.\n")));
 }
 
+TEST(Conform, TheExampleForAuthorsHolds) {
+  const Outcome o = frond_command({"conform", "--plugin", FROND_TEST_PLUGINS "/paper.so", "paper"});
+  EXPECT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_THAT(o.out,
+              HasSubstr("No law was found broken, at the defaults and at the ends of the ranges of reflectance.\n"));
+}
+
 TEST(Conform, TheGivenParametersAloneStateWhatTheyHide) {
   const Outcome o = conform_planted({"too_bright", "--given-only"});
   EXPECT_EQ(o.code, 0) << o.err;

@@ -57,8 +57,6 @@ struct Unbounded final : Material {
 };
 
 const MaterialInfo kTable[] = {
-    {{"material", "too_bright", "Reflects 5 % too much.", "", kReflectance}, make_material<TooBright>},
-    {{"material", "unbounded", "Brighter than white at a scale above 1.", "", kScale}, make_material<Unbounded>},
     {{"material", "picky", "Refuses what it dislikes.", "", kLevel}, make_material<Picky>},
     {{"material", "picky_with_itself", "Refuses its own default.", "", kTooHigh}, make_material<Picky>},
     {{"material", "not_there", "A surface that is none.", "", {}}, make_material<NotThere>},
@@ -72,6 +70,8 @@ const MaterialInfo kTable[] = {
     planted<NegativeF>("negative"),
     planted<StochasticMissesAWayOut>("misses_a_way_out"),
     planted<StochasticWrongByLittle>("wrong_cone"),
+    {{"material", "too_bright", "Reflects 5 % too much.", "", kReflectance}, make_material<TooBright>},
+    {{"material", "unbounded", "Brighter than white at a scale above 1.", "", kScale}, make_material<Unbounded>},
 };
 
 constexpr auto pointers() {
