@@ -248,7 +248,7 @@ def conform(material, *, session: Session | None | None = None, given_only: bool
 
     Test whether a material obeys the laws of scattering.
 
-    Exit code 0: all laws hold; 2: a law is broken.
+    Exit code 0: no law was found broken; 2: a law is broken.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
     given_only: Test the given parameters and defaults only. By default parameters that are not given are also tested at the ends of their ranges and at all choices, one at a time, with a tenth of the samples. Excludes sweep.
