@@ -59,7 +59,7 @@ def compare(scene: str | os.PathLike | Scene, materials: str | os.PathLike | Seq
     output: Folder of the report: charts, tables, index.html. By default results are only printed.
     reference: Candidate whose converged render is the reference. The default is the expectation of the analog random walk, with less noise. Default: abm,mode=weighted.
     rms: Report the cheapest candidate with this RMS error. Range: from 1e-06 to 1.
-    target: RMS errors of red, green and blue for speed-up (c): three numbers, or the paper's front, back or ambient. Excludes relative.
+    target: RMS errors of red, green and blue for the speed-up at equal error: three numbers, or the paper's front, back or ambient. Excludes relative.
     relative: Report errors relative to the reference: RMS over pixels, divided by the reference's mean over them, in each channel; rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.
     leaf: Name of a material to replace; by default every leaf. Repeatable.
     wavelengths: Wavelength strategy instead of the scene's; smpte: the paper's three wavelengths.
@@ -154,15 +154,15 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
 
     Returns the job's table."""
 
-def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, irradiance: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
     Bands with responses have names, in the column "band".
 
-    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][band]`,
-    "areas" `[instance]`, "wavelengths_nm", for bands with names "bands", and if there is PAR, "par_umol_m2_s" and
-    "par_umol_m2_s_se" `[instance]`: absorbed photons by leaf area.
+    With by="instance" also the table of the instances, one row each: "instance", "area", for PAR "par_umol_m2_s" (absorbed photons
+    by leaf area), and for each wavelength or band "absorbed_550", "absorbed_nir", ... (shares of the incident light), each with a
+    column "_se" (standard error).
 
     Measure the light budget of a scene: reflection, transmission, absorption.
 
@@ -175,7 +175,8 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     paths: Number of light paths; at least 32 for each wavelength are traced. Default: 1e6.
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
-    by: Measure the absorption of each instance of an object, one row each. One of instance.
+    by: Measure the absorption of each instance of an object, one row each; the table of shares is then in a file beside that of csv: leaves-flux.csv beside leaves.csv. One of instance.
+    instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0. Needs by.
     irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene, and photons, which need a unit, solar-am1.5-global. Unit: W/(m2 nm).
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
