@@ -278,7 +278,7 @@ def test_flux_until_the_error_of_leaves(tmp_path):
     assert few["instance_error_median"] > 0.05 and few["instance_error_largest"] >= few["instance_error_median"]
     reached = frond.run("flux", **given, instance_error=0.003).facts
     assert reached["instance_error_median"] <= 0.003 and reached["paths"] > 65536
-    with pytest.raises(frond.InputError, match="instance_error= needs by="):
+    with pytest.raises(frond.InputError, match="instance_error needs by"):
         frond.flux(tmp_path / "canopy.pbrt", instance_error=0.1)
 
 
