@@ -3,8 +3,8 @@
 #include <chrono>
 #include <list>
 
-#include "jobs/record/command_line.h"
 #include "jobs/record/common_params.h"
+#include "jobs/support/shell_command.h"
 #include "scene/format/words.h"
 #include "study/choose/choice_report.h"
 #include "study/compare/measure.h"

@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "image/image_file.h"
-#include "jobs/record/command_line.h"
 #include "jobs/submit/engine.h"
 #include "jobs/support/render_task.h"
+#include "jobs/support/shell_command.h"
 #include "scene/format/words.h"
 #include "system/child_process.h"
 #include "system/file_bytes.h"

@@ -28,10 +28,6 @@ std::vector<std::string> option_names(const JobParam& param);
 std::string value_name(const JobParam& param);
 /// Returns the usage line, "frond brf [OPTIONS] scene"; optional arguments are in brackets.
 std::string usage(const JobInfo& job);
-/// Returns a word for a POSIX shell, quoted if necessary.
-std::string shell_word(const std::string& word);
-/// Returns the given arguments as a command that can be pasted into a POSIX shell in the same folder.
-std::string pasted_command(const JobInfo& job, const Arguments& args);
 /// Returns the first sentence of `doc` without its full stop.
 std::string first_sentence(std::string_view doc);
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "jobs/record/command_line.h"
+#include "jobs/support/shell_command.h"
 #include "jobs/support/templates.h"
 
 namespace frond {
