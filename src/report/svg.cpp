@@ -165,8 +165,11 @@ class PanelDrawing {
   static double room_of_ends(const Panel& panel) {
     constexpr double kMost = 0.45;  // of the panel
     double room = 0;
-    for (const Series& s : panel.series)
-      for (const std::string& text : lines_of(s.end)) room = std::max(room, kLeader + 1.05 * width_of(text) + 8);
+    for (const Series& s : panel.series) {
+      const auto lines = lines_of(s.end);
+      for (size_t i = 0; i < lines.size(); ++i)
+        room = std::max(room, kLeader + (i == 0 ? 1.05 : 0.88) * width_of(lines[i]) + 8);
+    }
     return std::min(room, kMost * panel.width);
   }
   /// Returns the labels at the ends of curves, in the order of these ends and moved apart where they would overlap,
