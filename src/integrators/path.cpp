@@ -52,6 +52,7 @@ constexpr Param kPath[] = {
      .range = {0, 1},
      .doc = "Attenuation below which a path ends."},
     kRegularize,
+    kHideBackground,
 };
 
 /// Unidirectional path tracing; light sampling and BSDF sampling combined by the power heuristic.
@@ -65,6 +66,7 @@ class PathIntegrator final : public Integrator {
                   .cut_off_attenuation = p.string("termination") == "attenuation",
                   .cutoff = float(p.real("cutoff")),
                   .regularizes = p.boolean("regularize"),
+                  .hides_background = p.boolean("hidebackground"),
                   .rays_by_material = {}},
         adapted_{.light_samples = p.integer("lightsamples") == 0, .scattered_rays = p.integer("scatteredrays") == 0},
         strategy_(light_strategy(p)) {}

@@ -29,6 +29,14 @@ inline constexpr Param kRegularize{.name = "regularize",
                                        "dielectrics and coats: alpha below 0.3 becomes 2 alpha, between 0.1 and 0.3. "
                                        "Caustics are blurred, with less noise; biased."};
 
+/// Parameter of both.
+inline constexpr Param kHideBackground{.name = "hidebackground",
+                                       .kind = ParamKind::boolean,
+                                       .default_value = false,
+                                       .doc =
+                                           "Camera rays that meet no surface bring no light from the environment: a "
+                                           "black background, for compositing with channel alpha."};
+
 /// Largest number of invisible surfaces along one path: rounding could make a ray hit the same one without end.
 inline constexpr int kMostPassed = 1000;
 

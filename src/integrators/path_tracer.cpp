@@ -122,7 +122,7 @@ class PathTracer final : public Tracer {
   /// Returns the paths that hit a surface; the others receive the environment's radiance and end.
   LaneSet after_rays(const LaneSet& alive, uint32_t hits) {
     for (const size_t i : LaneSet(alive.bits() & ~hits)) {
-      add_environment(i);
+      if (!settings_.hides_background || paths_[i].depth > 0) add_environment(i);
       if (branch_ == 0) bundle_->results[i].escaped = true;
     }
     return LaneSet(alive.bits() & hits);

@@ -19,6 +19,7 @@ struct PathSettings {
   bool cut_off_attenuation;
   float cutoff;
   bool regularizes;
+  bool hides_background;
   /// The same as scattered_rays by SurfacePoint::material_id, for the materials before the vector's end.
   std::vector<int> rays_by_material;
 };

@@ -35,6 +35,7 @@ constexpr Param kVolPath[] = {
      .doc = "Selection of a light. bvh: by a light tree's estimate of its contribution.",
      .choices = kLightSamplers},
     kRegularize,
+    kHideBackground,
 };
 
 /// Values of the parameters.
@@ -42,6 +43,7 @@ struct VolPathSettings {
   int max_depth;
   bool sample_lights;
   bool regularizes;
+  bool hides_background;
 };
 
 /// Traces one path after the other. A loop iteration is one ray: its medium, then the surface that it meets.
@@ -77,7 +79,8 @@ class VolPathTracer final : public Tracer {
       }
       if (!is_hit) {
         result().escaped = true;
-        return add_environment();
+        if (!settings_.hides_background || depth_ > 0) add_environment();
+        return;
       }
       if (!meet(point)) return;
     }
@@ -360,7 +363,8 @@ class VolPathTracer final : public Tracer {
 class VolPathIntegrator final : public Integrator {
  public:
   explicit VolPathIntegrator(const Params& p)
-      : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.boolean("regularize")},
+      : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.boolean("regularize"),
+                  p.boolean("hidebackground")},
         strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }

@@ -40,7 +40,7 @@ std::optional<AppliedExposure> ImageOutput::write(const Film& film, const ImageF
   const FilmSettings& s = film.settings();
   std::vector<std::string> full_precision;
   for (const ChannelInfo* channel : film.format().channels.infos())
-    for (size_t c = 0; c < channel->size(); ++c) full_precision.emplace_back(channel->exr[c]);
+    for (std::string& name : channel->exr_names()) full_precision.push_back(std::move(name));
   const std::string space = format.space.empty() ? preview_space(format.bands) : format.space;
   write_image(path_, image, {space, attributes, s.crop.x0, s.crop.y0, s.width, s.height, full_precision},
               s.half ? ExrDepth::half : ExrDepth::single);

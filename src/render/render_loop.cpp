@@ -175,6 +175,7 @@ class Worker {
   /// Adds the results `begin` to `end - 1` of the bundle to the tile.
   void add(int x, int y, size_t begin, size_t end) {
     const bool has_channels = format_.channels.means() + format_.channels.ids() > 0;
+    const bool has_mattes = format_.channels.mattes() > 0;
     for (size_t i = begin; i < end; ++i) {
       const PathResult& path = bundle_.results[i];
       const SampledWavelengths& lambda = bundle_.lambda[i];
@@ -191,10 +192,16 @@ class Worker {
         features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
         tile_.add(x, y, features);
       }
+      if (has_mattes) {
+        mattes_[i] = {{}, double(weight), {offset.x + 0.5f, offset.y + 0.5f}};
+        if (path.first.is_hit) mattes_[i].keys = format_.channels.matte_keys({path.first, bundle_.rays[i], axis_, {}});
+      }
       statistics_.ends.add(path);
       if (path.fault.kind != PlugInFault::Kind::none) ++statistics_.faults[path.fault];
     }
-    tile_.add(format_, x, y, std::span(samples_).subspan(begin, end - begin), kernel_ ? &*kernel_ : nullptr);
+    const SplatKernel* kernel = kernel_ ? &*kernel_ : nullptr;
+    tile_.add(format_, x, y, std::span(samples_).subspan(begin, end - begin), kernel);
+    if (has_mattes) tile_.add_mattes(x, y, std::span(mattes_).subspan(begin, end - begin), kernel);
   }
 
   static constexpr uint32_t kBundle = PathBundle::kMost;
@@ -209,6 +216,7 @@ class Worker {
   PathBundle bundle_;
   std::array<Filter::Sample, kBundle> filter_;  ///< filter samples of the bundle
   std::array<FilmTile::Sample, kBundle> samples_;
+  std::array<MatteSample, kBundle> mattes_;
   FilmTile tile_;
   Vec3 axis_;  ///< viewing direction, along which depth is measured
   RenderStatistics statistics_;

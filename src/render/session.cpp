@@ -62,6 +62,14 @@ void name_materials(const SceneSettings& description, ImageFormat& image) {
   }
 }
 
+/// Material without a name: its plug-in and its index, as in the channel `material`.
+std::vector<std::string> material_names(const SceneSettings& description) {
+  std::vector<std::string> names;
+  for (const MaterialDescription& m : description.materials)
+    names.push_back(m.name.empty() ? fmt::format("{}.{}", m.plugin.name, names.size() + 1) : m.name);
+  return names;
+}
+
 ImageFormat image_of(const SceneSettings& description, const ImageRequest& request, const Scene& scene,
                      const FilmSettings& film, const ChannelList& channels) {
   const auto bands = scene.wavelengths().bands();
@@ -74,6 +82,9 @@ ImageFormat image_of(const SceneSettings& description, const ImageRequest& reque
     image.from_world = origin == Vec3d{} ? to_double_rows(view) : view.relative_to(origin).precise.rows();
   }
   if (channels.has("material")) name_materials(description, image);
+  if (channels.has("CryptoObject")) image.names.objects = scene.geometry().instance_names();
+  if (channels.has("CryptoObject") || channels.has("CryptoMaterial"))
+    image.names.materials = material_names(description);
   image.attributes["frond:version"] = FROND_VERSION;
   image.attributes["frond:seed"] = std::to_string(scene.seed());
   image.attributes["frond:wavelengths"] = scene.wavelengths_name();

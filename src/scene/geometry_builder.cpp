@@ -125,6 +125,7 @@ class GeometryBuilder {
       if (++open_ > InstanceRows::kMost + 1) refuse_nesting(object);  // one more if the outermost is not placed
       visits_[index].is_open = true;
       ObjectParts parts = parts_of(object.shapes, object.instances);
+      parts.name = object.name;
       visits_[index] = {false, uint32_t(objects_.size())};
       built_.push_back({index, levels_in(parts)});
       objects_.push_back(std::move(parts));

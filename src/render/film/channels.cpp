@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/film/cryptomatte.h"
+
 namespace frond {
 namespace {
 
@@ -12,6 +14,7 @@ using Kind = ChannelInfo::Kind;
 using Space = ChannelInfo::Space;
 
 Triple albedo(const CameraHit& hit) { return hit.albedo; }
+double material_key(const CameraHit& hit) { return -1 - double(hit.first.material); }
 /// A normal on the side of the camera, as in pbrt-v4.
 Triple facing(const Vec3& n, const CameraHit& hit) { return triple(dot(n, hit.ray.d) > 0 ? -n : n); }
 
@@ -24,6 +27,7 @@ constexpr ChannelInfo kChannels[] = {
      Space::none,
      "share of light that the surface reflects or transmits",
      albedo,
+     true,
      true},
     {"normal",
      {"normal.X", "normal.Y", "normal.Z"},
@@ -62,6 +66,7 @@ constexpr ChannelInfo kChannels[] = {
      Space::none,
      "as albedo, with the name of pbrt-v4",
      albedo,
+     true,
      true},
     {"N",
      {"N.X", "N.Y", "N.Z"},
@@ -97,6 +102,26 @@ constexpr ChannelInfo kChannels[] = {
      "Variance over the mean, as in pbrt-v4",
      nullptr,
      true},
+    {"alpha",
+     {"A", "", ""},
+     Kind::coverage,
+     Space::none,
+     "share of the pixel that surfaces cover, weighted by the pixel filter",
+     [](const CameraHit&) { return single(1); }},
+    {"CryptoObject",
+     {"CryptoObject", "", ""},
+     Kind::cryptomatte,
+     Space::none,
+     "Cryptomatte of instances, and of the materials of shapes outside objects",
+     [](const CameraHit& hit) {
+       return single(hit.first.instance > 0 ? double(hit.first.instance) : material_key(hit));
+     }},
+    {"CryptoMaterial",
+     {"CryptoMaterial", "", ""},
+     Kind::cryptomatte,
+     Space::none,
+     "Cryptomatte of materials",
+     [](const CameraHit& hit) { return single(material_key(hit)); }},
 };
 
 constexpr size_t count(ChannelInfo::Kind kind) {
@@ -104,6 +129,7 @@ constexpr size_t count(ChannelInfo::Kind kind) {
   for (const ChannelInfo& c : kChannels) values += c.kind == kind ? c.size() : 0;
   return values;
 }
+static_assert(count(Kind::coverage) + count(Kind::cryptomatte) == kMostMattes);
 static_assert(std::ranges::all_of(kChannels,
                                   [](const ChannelInfo& c) { return c.space == Space::none || c.size() == 3; }));
 static_assert(count(Kind::mean) <= kMostMeans && count(Kind::nearest) <= kMostIds);
@@ -111,6 +137,19 @@ static_assert(count(Kind::mean) <= kMostMeans && count(Kind::nearest) <= kMostId
 }  // namespace
 
 std::span<const ChannelInfo> all_channels() { return kChannels; }
+
+std::vector<std::string> ChannelInfo::exr_names() const {
+  if (kind == Kind::cryptomatte) return matte_channels(exr[0]);
+  return {exr.begin(), exr.begin() + size()};
+}
+
+std::array<MatteKey, kMostMattes> ChannelList::matte_keys(const CameraHit& hit) const {
+  std::array<MatteKey, kMostMattes> keys{};
+  size_t count = 0;
+  for (const ChannelInfo* info : infos_)
+    if (info->is_matte()) keys[count++] = MatteKey(info->value(hit)[0]);
+  return keys;
+}
 
 ChannelList::ChannelList(const std::vector<std::string>& names, const Location& where) {
   std::vector<std::string_view> known;
@@ -123,6 +162,7 @@ ChannelList::ChannelList(const std::vector<std::string>& names, const Location& 
     infos_.push_back(&info);
     if (info.kind == Kind::mean) means_ += info.size();
     if (info.kind == Kind::nearest) ids_ += info.size();
+    if (info.is_matte()) ++mattes_;
   }
 }
 

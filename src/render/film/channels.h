@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/integrator.h"
+#include "render/film/mattes.h"
 #include "spectra/matrix3.h"
 
 namespace frond {
@@ -24,21 +25,29 @@ struct CameraHit {
 /// needs data that FirstHit lacks, the integrator must provide them there.
 struct ChannelInfo {
   /// How a pixel's value follows from its samples: mean over the samples with a hit; value of the sample nearest to the
-  /// pixel's centre, for ids; number of samples; variance of the samples' colour, and its ratio to the mean.
-  enum class Kind : uint8_t { mean, nearest, sample_count, sample_variance, relative_variance };
+  /// pixel's centre, for ids; number of samples; variance of the samples' colour, and its ratio to the mean; share of
+  /// the pixel that surfaces cover; the same by surface (cryptomatte.h). The last two have the filter's weights.
+  enum class Kind : uint8_t { mean, nearest, sample_count, sample_variance, relative_variance, coverage, cryptomatte };
   /// How values are transformed to camera space (FilmSettings::features_in_camera_space); a point or vector has three.
   enum class Space : uint8_t { none, point, vector };
 
   std::string_view name;                ///< name for --channels
-  std::array<std::string_view, 3> exr;  ///< names of the values in the EXR file; unused ones are empty
+  std::array<std::string_view, 3> exr;  ///< names of the values in the EXR file, or of the layer; unused ones are empty
   Kind kind;
   Space space;
   std::string_view doc;
-  Triple (*value)(const CameraHit&);  ///< value of one sample; nullptr if it is not a property of the hit
-  bool is_color = false;              ///< needs a film of colours, not of bands
+  /// Value of one sample, or its MatteKey; nullptr if it is not a property of the hit.
+  Triple (*value)(const CameraHit&);
+  bool is_color = false;  ///< needs a film of colours, not of bands
+  /// Values lie between 0 and 1. Estimates from few wavelengths can lie outside: images have the nearest such value.
+  bool is_share = false;
 
   /// Number of values.
   constexpr size_t size() const { return exr[1].empty() ? 1 : exr[2].empty() ? 2 : 3; }
+  /// Whether the film keeps a MatteList of it.
+  constexpr bool is_matte() const { return kind == Kind::coverage || kind == Kind::cryptomatte; }
+  /// Names of all its channels in the EXR file.
+  std::vector<std::string> exr_names() const;
 };
 
 /// Upper limits of the number of values of all channels of kind mean, and of kind nearest.
@@ -64,10 +73,14 @@ class ChannelList {
   /// Total number of values of the channels of kind mean, and of kind nearest.
   size_t means() const { return means_; }
   size_t ids() const { return ids_; }
+  /// Number of channels with mattes.
+  size_t mattes() const { return mattes_; }
+  /// Keys of a hit in their lists.
+  std::array<MatteKey, kMostMattes> matte_keys(const CameraHit& hit) const;
 
  private:
   std::vector<const ChannelInfo*> infos_;
-  size_t means_ = 0, ids_ = 0;
+  size_t means_ = 0, ids_ = 0, mattes_ = 0;
 };
 
 }  // namespace frond

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "core/error.h"
 #include "system/machine.h"
@@ -300,6 +302,29 @@ Film::FeatureMeans Film::features(int x, int y) const {
   return result;
 }
 
+/// As `gathered`, sums of tiles are divided by their samples per pixel.
+std::vector<Matte> Film::mattes(int x, int y, size_t list) const {
+  std::map<MatteKey, double> weights;
+  double all = 0;
+  const auto add = [&](const FilmTile& tile) {
+    const double samples = tile.samples_per_pixel();
+    if (samples == 0) return;
+    for (const MatteList::Entry& e : tile.mattes(x, y, list).entries()) {
+      weights[e.key] += double(e.weight) / samples;
+      all += double(e.weight) / samples;
+    }
+  };
+  if (format_.splatting)
+    for_each_reaching_tile(x, y, add);
+  else
+    add(tiles_[tile_at(x, y)]);
+  std::vector<Matte> mattes;
+  for (const auto& [key, weight] : weights)  // a filter with negative weights can make a coverage negative, or above 1
+    if (key != 0 && weight > 0 && all > 0) mattes.push_back({key, std::min(weight / all, 1.0)});
+  std::ranges::stable_sort(mattes, std::greater(), &Matte::coverage);
+  return mattes;
+}
+
 double Film::leaf_fraction(int x, int y) const {
   const FilmTile::Pixel& p = pixel(x, y);
   return p.samples > 0 ? double(p.leaf) / double(p.samples) : 0;
@@ -338,6 +363,9 @@ void check_memory(const FilmFormat& format, size_t films, const Location& where,
         double(crop.width()) * double(crop.height()) * double(films) * (1 + 2.0 * s->reach_x() / Film::kTile) *
         (1 + 2.0 * s->reach_y() / Film::kTile) *
         ((format.halves ? 2 : 1) * sizeof(FilmTile::WeightedSums) + double(format.bands) * sizeof(FilmTile::BandSplat));
+  constexpr double kMatteBytes = sizeof(MatteList) + 4 * sizeof(MatteList::Entry) + 12 * sizeof(float);
+  bytes +=
+      double(crop.width()) * double(crop.height()) * double(films) * double(format.channels.mattes()) * kMatteBytes;
   const double memory = machine_memory();
   if (bytes <= memory) return;
   fail(where, "{} {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: {}",

@@ -81,6 +81,8 @@ class Film {
     uint64_t hits = 0;
   };
   FeatureMeans features(int x, int y) const;
+  /// Surfaces of list `list` in a pixel, by coverage, the largest first.
+  std::vector<Matte> mattes(int x, int y, size_t list) const;
   uint64_t samples(int x, int y) const { return pixel(x, y).samples; }
   /// Share of the pixel's samples whose first hit is a leaf.
   double leaf_fraction(int x, int y) const;

@@ -127,7 +127,7 @@ FilmTile::BandSplat& FilmTile::BandSplat::operator+=(const BandSplat& other) {
 Features::Features(const ChannelList& channels, const CameraHit& hit) {
   size_t mean = 0, id = 0;
   for (const ChannelInfo* channel : channels.infos()) {
-    if (!channel->value) continue;
+    if (!channel->value || channel->is_matte()) continue;
     const Triple value = channel->value(hit);
     for (size_t c = 0; c < channel->size(); ++c)
       (channel->kind == ChannelInfo::Kind::mean ? means[mean++] : ids[id++]) = value[c];
@@ -138,6 +138,7 @@ FilmTile::FilmTile(const FilmFormat& format, const Crop& pixels)
     : band_count_(format.bands),
       mean_count_(format.channels.means()),
       id_count_(format.channels.ids()),
+      matte_count_(format.channels.mattes()),
       has_halves_(format.halves),
       width_(format.settings.width),
       height_(format.settings.height) {
@@ -157,6 +158,7 @@ void FilmTile::clear(const Crop& pixels) {
   if (shares_samples() && count > 0)
     reached_ = intersection(widened(pixels, reach_x_, reach_y_), {0, 0, width_, height_});
   const size_t reached = size_t(reached_.width()) * size_t(reached_.height());
+  mattes_.assign((shares_samples() ? reached : count) * matte_count_, {});
   splats_.assign(reached, {});
   band_splats_.assign(reached * band_count_, {});
   first_half_paths_ = 0;
@@ -274,6 +276,40 @@ void FilmTile::add(int x, int y, const Features& f) {
   }
 }
 
+/// Samples with the same key are summed first: most bundles hit few surfaces.
+void FilmTile::add_mattes(int x, int y, std::span<const MatteSample> samples, const SplatKernel* kernel) {
+  assert(samples.size() <= kAtOnce && bool(kernel) == shares_samples());
+  for (size_t list = 0; list < matte_count_; ++list) {
+    std::array<bool, kAtOnce> is_done{};
+    for (size_t i = 0; i < samples.size(); ++i) {
+      if (is_done[i]) continue;
+      const MatteKey key = samples[i].keys[list];
+      int64_t own = 0;
+      std::array<int64_t, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums;
+      const auto width = size_t(2 * reach_x_ + 1), height = size_t(2 * reach_y_ + 1);
+      if (kernel) std::fill_n(sums.begin(), width * height, 0);
+      for (size_t j = i; j < samples.size(); ++j) {
+        const MatteSample& sample = samples[j];
+        if (sample.keys[list] != key) continue;
+        is_done[j] = true;
+        own += int64_t(sample.weight * kWeightsOfOne);
+        if (!kernel) continue;
+        const SplatKernel::Weights weights = kernel->at(sample.place);
+        for (size_t row = 0; row < height; ++row)
+          for (size_t column = 0; column < width; ++column)
+            sums[row * width + column] += int64_t(double(weights.at(column, row)) * kWeightsOfOne);
+      }
+      if (kernel)
+        for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
+          const int64_t weight = sums[row * width + column];
+          if (weight != 0) mattes_[at * matte_count_ + list].add(key, weight);
+        });
+      else
+        mattes_[index(x, y) * matte_count_ + list].add(key, own);
+    }
+  }
+}
+
 void FilmTile::add_features(size_t at, const FilmTile& other, size_t from) {
   Hits& hits = hits_[at];
   const Hits& others = other.hits_[from];
@@ -325,6 +361,7 @@ void FilmTile::merge_splats(const FilmTile& other) {
     const size_t to = reached_index(c.x0, y), from = other.reached_index(c.x0, y);
     add_all(splats_, to, other.splats_, from, width);
     add_all(band_splats_, to * band_count_, other.band_splats_, from * band_count_, width * band_count_);
+    add_all(mattes_, to * matte_count_, other.mattes_, from * matte_count_, width * matte_count_);
     if (other.first_half_paths_ > 0) add_all(first_half_, to, other.first_half_, from, width);
   }
 }
@@ -341,6 +378,8 @@ bool FilmTile::merge(const FilmTile& other) {
     add_all(pixels_, to, other.pixels_, from, width);
     add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
     for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
+    if (!shares_samples())
+      add_all(mattes_, to * matte_count_, other.mattes_, from * matte_count_, width * matte_count_);
     if (other.first_half_paths_ > 0 && !shares_samples()) add_all(first_half_, to, other.first_half_, from, width);
   }
   if (shares_samples()) merge_splats(other);

@@ -9,6 +9,7 @@
 #include "core/film.h"
 #include "core/wavelengths.h"
 #include "render/film/channels.h"
+#include "render/film/mattes.h"
 #include "render/film/splatting.h"
 #include "render/film/work.h"
 #include "spectra/matrix3.h"
@@ -111,6 +112,8 @@ class FilmTile {
            const SplatKernel* kernel = nullptr);
   /// Adds the values of additional channels for one sample.
   void add(int x, int y, const Features& features);
+  /// Adds what the samples of a pixel hit, to the lists of mattes. `kernel` as for samples.
+  void add_mattes(int x, int y, std::span<const MatteSample> samples, const SplatKernel* kernel);
   /// For a film with `halves`: makes the present sums those of the first half; the next samples are the second half,
   /// which need not have as many.
   void begin_second_half();
@@ -132,6 +135,10 @@ class FilmTile {
   /// Sum of value `i` of the channels of kind mean, and value `i` of those of kind nearest.
   const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
+  /// List `i` of mattes: over the samples that reach a pixel; without splatting, over those of the pixel.
+  const MatteList& mattes(int x, int y, size_t i) const {
+    return mattes_[(shares_samples() ? reached_index(x, y) : index(x, y)) * matte_count_ + i];
+  }
   /// Pixels of the image that the tile's samples reach; empty without splatting.
   const Crop& reached() const { return reached_; }
   const WeightedSums& splat(int x, int y) const { return splats_[reached_index(x, y)]; }
@@ -175,7 +182,7 @@ class FilmTile {
   }
 
   Crop crop_, reached_{};
-  size_t band_count_, mean_count_, id_count_;
+  size_t band_count_, mean_count_, id_count_, matte_count_;
   bool has_halves_;
   int reach_x_ = -1, reach_y_ = -1;  ///< SplatAxis::reach; -1 without splatting
   int width_, height_;               ///< full resolution of the image
@@ -185,6 +192,7 @@ class FilmTile {
   std::vector<Hits> hits_;                ///< [pixel], if there are means or ids
   std::vector<ExactSum<40>> mean_sums_;   ///< [pixel][value]
   std::vector<double> ids_;               ///< [pixel][value]
+  std::vector<MatteList> mattes_;         ///< [pixel in reached_, without splatting pixel][list]
   std::vector<WeightedSums> splats_;      ///< [pixel in reached_]
   std::vector<BandSplat> band_splats_;    ///< [pixel in reached_][band]
   uint64_t first_half_paths_ = 0;         ///< number of samples of all pixels in the first half

@@ -25,7 +25,7 @@ class PixelWriter {
       if (!preview_.empty()) names_.insert(names_.end(), {"R", "G", "B"});
     }
     for (const ChannelInfo* channel : film.format().channels.infos())
-      for (size_t c = 0; c < channel->size(); ++c) names_.emplace_back(channel->exr[c]);
+      for (std::string& name : channel->exr_names()) names_.push_back(std::move(name));
   }
   const std::vector<std::string>& names() const { return names_; }
   /// Names of the colours, or of the bands and their preview colours.
@@ -95,19 +95,35 @@ class PixelWriter {
     const Film::FeatureMeans features = has_features ? film_.features(x, y) : Film::FeatureMeans{};
     const double* mean = features.means.data();
     const double* id = features.ids.data();
+    size_t matte = 0;
     for (const ChannelInfo* channel : channels.infos()) {
+      if (channel->is_matte()) {
+        put_mattes(channel->kind, film_.mattes(x, y, matte++));
+        continue;
+      }
       if (!channel->value) {
         put_statistic(channel->kind, x, y);
         continue;
       }
       const double*& value = channel->kind == ChannelInfo::Kind::mean ? mean : id;
       if (channel->space == ChannelInfo::Space::none)
-        for (size_t c = 0; c < channel->size(); ++c) put(value[c]);
+        for (size_t c = 0; c < channel->size(); ++c) put(channel->is_share ? std::clamp(value[c], 0.0, 1.0) : value[c]);
       else
         put(mapped({value[0], value[1], value[2]},
                    channel->space == ChannelInfo::Space::point && features.hits > 0 ? 1 : 0));
       value += channel->size();
     }
+  }
+
+  /// IDs of Cryptomatte are bits, not quantities: they are not clamped.
+  void put_mattes(ChannelInfo::Kind kind, const std::vector<Matte>& mattes) {
+    if (kind == ChannelInfo::Kind::cryptomatte) {
+      to_ = std::ranges::copy(matte_values(mattes, format_.names), to_).out;
+      return;
+    }
+    double alpha = 0;
+    for (const Matte& m : mattes) alpha += m.coverage;
+    put(std::min(alpha, 1.0));
   }
 
   void put_statistic(ChannelInfo::Kind kind, int x, int y) {

@@ -8,6 +8,7 @@
 
 #include "core/image.h"
 #include "core/wavelengths.h"
+#include "render/film/cryptomatte.h"
 #include "render/film/film.h"
 
 namespace frond {
@@ -19,6 +20,7 @@ struct ImageFormat {
   /// First three rows of the matrix from world space to the space of positions and normals.
   std::array<std::array<double, 4>, 3> from_world{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
   std::map<std::string, std::string> attributes = {};  ///< for the header of the image file
+  MatteNames names = {};                               ///< for channels of Cryptomatte
 };
 
 /// Image of a film: colours, or bands in the layout of image/spectral_layout.h, their variances, `leaf`, and the film's

@@ -135,6 +135,12 @@ ImageFormat finished_image(const RenderPart& part) {
       even ? fmt::format("{}", count.most) : fmt::format("{} to {}", count.least, count.most);
   if (part.film.format().halves)
     image.attributes["frond:noise_rms"] = fmt::format("{:.6f}", image_noise(part.film, 0).rms());
+  size_t list = 0;
+  for (const ChannelInfo* channel : part.film.format().channels.infos()) {
+    if (channel->kind == ChannelInfo::Kind::cryptomatte)
+      image.attributes.merge(matte_attributes(channel->name, part.film, list, image.names));
+    if (channel->is_matte()) ++list;
+  }
   if (part.header.command.empty()) return image;
   std::string command = part.header.command;
   if (even) command += fmt::format(" --spp {}", count.most);

@@ -44,6 +44,9 @@ class PartFile {
     array(tile.first_half_);
     each(&tile.rays_, sizeof tile.rays_);
   }
+  /// Mattes are lists of any length.
+  static std::vector<MatteList>& mattes(FilmTile& tile) { return tile.mattes_; }
+  static const std::vector<MatteList>& mattes(const FilmTile& tile) { return tile.mattes_; }
   /// True if the numbers of samples are possible ones of the tile's coverage.
   static bool has_counts_of_coverage(const FilmTile& tile) {
     uint64_t samples = 0;
@@ -215,7 +218,9 @@ std::string header_text(const PartHeader& h, const FilmFormat& film) {
                 {{"space", h.image.space},
                  {"bands", json_of(h.image.bands)},
                  {"from_world", h.image.from_world},
-                 {"attributes", h.image.attributes}}},
+                 {"attributes", h.image.attributes},
+                 {"materials", h.image.names.materials},
+                 {"objects", h.image.names.objects}}},
                {"command", h.command},
                {"scene_crop", json_of(h.scene_crop)},
                {"pixel_scale", h.pixel_scale},
@@ -235,6 +240,8 @@ PartHeader header_of(const Json& j) {
   h.image.bands = bands_of(image.at("bands"));
   h.image.from_world = image.at("from_world").get<decltype(h.image.from_world)>();
   h.image.attributes = image.at("attributes").get<std::map<std::string, std::string>>();
+  h.image.names.materials = image.value("materials", decltype(h.image.names.materials)());
+  h.image.names.objects = image.value("objects", decltype(h.image.names.objects)());
   h.command = j.at("command");
   h.scene_crop = crop_of(j.at("scene_crop"));
   h.pixel_scale = integer_of(j.at("pixel_scale"), 2);
@@ -335,6 +342,12 @@ void write_tile(const FilmTile& tile, Compressor& to) {
     to.add(&item, sizeof item);
   }
   PartFile::for_each_array(tile, [&to](const void* data, size_t bytes) { to.add(data, bytes); });
+  for (const MatteList& list : PartFile::mattes(tile)) {
+    static_assert(std::has_unique_object_representations_v<MatteList::Entry>);
+    const uint64_t entries = list.entries().size();
+    to.add(&entries, sizeof entries);
+    to.add(list.entries().data(), entries * sizeof(MatteList::Entry));
+  }
 }
 
 void read_tile(Decompressor& from, FilmTile& tile, const fs::path& path) {
@@ -352,6 +365,14 @@ void read_tile(Decompressor& from, FilmTile& tile, const fs::path& path) {
   }
   PartFile::for_each_array(tile, [&from](void* data, size_t bytes) { from.get(data, bytes); });
   if (!PartFile::has_counts_of_coverage(tile)) fail_to_read(path, "is damaged");
+  for (MatteList& list : PartFile::mattes(tile)) {
+    const auto entries = from.get<uint64_t>();
+    for (uint64_t i = 0; i < entries; ++i) {
+      const auto entry = from.get<MatteList::Entry>();
+      if (!list.entries().empty() && entry.key <= list.entries().back().key) fail_to_read(path, "is damaged");
+      list.add(entry.key, entry.weight);
+    }
+  }
 }
 
 uint64_t take_number(std::string_view& bytes) {

@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/shape.h"
@@ -58,6 +60,7 @@ struct Instances {
 struct ObjectParts {
   std::vector<Surface> surfaces;
   std::vector<Instances> instances;
+  std::string name = {};  ///< of ObjectBegin; empty: the world, or a moving shape
 };
 
 /// A hit as indices, which the scene resolves.
@@ -108,6 +111,8 @@ class Geometry {
   const std::vector<Surface>& surfaces() const;
   /// Returns the largest GeometryHit::instance.
   uint64_t instances() const;
+  /// Returns the names of the instances' objects, each with the first number of those that have it, ascending.
+  std::vector<std::pair<uint64_t, std::string>> instance_names() const;
   /// Returns the columns of all tables by name; the range covers all columns of that name.
   std::vector<InstanceColumn> columns() const;
   /// Returns the indices of the materials that surfaces have, ascending, without those of objects that are not placed.
