@@ -1,9 +1,11 @@
 """Runs every ```sh block of README.md and docs/cookbook.md, one after the other, in a folder of its own for each page; fails on the
 first that fails, and where an image of a command is nearly black or white. README.md's ```shell blocks install frond: scripts/package,
-scripts/wheel and tests/package do.
+scripts/wheel and tests/package do. Of docs/shot.md the blocks in Python run too, among the others, which use what they write. (Those of
+the cookbook: python/tests/test_cookbook.py.)
 
-usage: cookbook_test.py BUILD_DIR FOLDER
-The build is installed into FOLDER, and its frond is the one in the path."""
+usage: cookbook_test.py BUILD_DIR FOLDER [PYTHON]
+The build is installed into FOLDER, and its frond is the one in the path. Without PYTHON, which the module frond is built for,
+docs/shot.md is left out."""
 
 import os
 import pathlib
@@ -34,10 +36,10 @@ exec "%s" "$@"
 """
 
 
-def blocks(text):
-    """Line numbers and commands."""
-    for match in re.finditer(r"^```sh\n(.*?)^```$", text, re.M | re.S):
-        yield text.count("\n", 0, match.start(1)) + 1, match[1]
+def blocks(text, languages="sh"):
+    """Line numbers, languages and commands."""
+    for match in re.finditer(rf"^```({languages})\n(.*?)^```$", text, re.M | re.S):
+        yield text.count("\n", 0, match.start(2)) + 1, match[1], match[2]
 
 
 def install(build, folder):
@@ -99,13 +101,14 @@ def images(folder):
     return {path: path.stat().st_mtime_ns for path in folder.rglob("*.png") if not NO_RENDERS.search(str(path.relative_to(folder)))}
 
 
-def run(page, least_blocks, least_images, here, environment):
+def run(page, least_blocks, least_images, here, environment, python=None):
+    programs = {"sh": ["bash", "-euo", "pipefail", "-c"]} | ({"python": [python, "-c"]} if python else {})
     count, seen = 0, images(here)
     shown = 0
-    for line, commands in blocks((ROOT / page).read_text(encoding="utf-8")):
+    for line, language, commands in blocks((ROOT / page).read_text(encoding="utf-8"), "|".join(programs)):
         count += 1
         start = time.monotonic()
-        r = subprocess.run(["bash", "-euo", "pipefail", "-c", commands], cwd=here, env=environment, text=True, check=False,
+        r = subprocess.run([*programs[language], commands], cwd=here, env=environment, text=True, check=False,
                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         print(f"{page}:{line}: {time.monotonic() - start:.1f} s", flush=True)
         if r.returncode != 0:
@@ -123,7 +126,7 @@ def run(page, least_blocks, least_images, here, environment):
         sys.exit(f"{page} has {count} blocks of commands and {shown} images: are they ```sh?")
 
 
-def main(build, folder):
+def main(build, folder, python=None):
     folder = pathlib.Path(folder).resolve()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -133,6 +136,8 @@ def main(build, folder):
         sys.exit(f"README.md has {len(readme)} lines: 100 at most")
     run("README.md", 2, 2, clone(folder / "readme"), small)
     run("docs/cookbook.md", 10, 4, clone(folder / "clone"), environment)
+    if python:
+        run("docs/shot.md", 6, 6, clone(folder / "shot"), environment | {"PYTHONPATH": str(pathlib.Path(build) / "python")}, python)
 
 
 if __name__ == "__main__":

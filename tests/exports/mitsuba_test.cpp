@@ -97,6 +97,12 @@ TEST_F(MitsubaScene, TheSamplerIsStratifiedUnlessTheSceneAsksForIndependentNumbe
               HasSubstr("<sampler type=\"independent\">"));
 }
 
+TEST_F(MitsubaScene, AHiddenBackgroundIsHidden) {
+  EXPECT_THAT(exported("Integrator \"path\" \"bool hidebackground\" true\n" + world("Shape \"sphere\"\n")),
+              HasSubstr("<boolean name=\"hide_emitters\" value=\"true\"/>"));
+  EXPECT_THAT(exported(world("Shape \"sphere\"\n")), Not(HasSubstr("hide_emitters")));
+}
+
 // Instances of instances become instances of the innermost object, with the product of their transforms.
 TEST_F(MitsubaScene, NestedInstancesAreWrittenWithoutNesting) {
   const std::string xml = exported(world(R"(

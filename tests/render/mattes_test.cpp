@@ -106,7 +106,7 @@ TEST_F(Mattes, OfABandAreThoseOfColors) {
   for (int x = 0; x < 40; ++x) {
     const auto a = colors.film.mattes(x, 13, 0), b = bands.film.mattes(x, 13, 0);
     ASSERT_EQ(a.size(), b.size());
-    if (!a.empty()) EXPECT_EQ(a[0].coverage, b[0].coverage);
+    for (size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].coverage, b[i].coverage);
   }
 }
 

@@ -177,6 +177,10 @@ void write_view(Context& context, Xml& xml, const FilmSettings& film, int sample
     // Shadow rays of Mitsuba's path tracer are blocked by masks; those of its volumetric path tracer are not.
     const Element path(xml, "integrator", {{"type", has_alpha(context.description) ? "volpath" : "path"}});
     xml.integer("max_depth", p.integer("maxdepth") + 1);
+    if (p.boolean("hidebackground")) {
+      xml.flag("hide_emitters", true);
+      context.warn(p.where("hidebackground"), "Mitsuba hides area lights from the camera too");
+    }
   }
   write_sensor(context, xml, film, samples);
 }
