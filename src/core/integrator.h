@@ -14,8 +14,7 @@ namespace frond {
 
 /// First surface that a camera ray meets.
 struct FirstHit {
-  bool is_hit = false;  ///< false if the ray meets no surface; then the other members have no meaning
-  bool is_leaf = false;
+  bool is_hit = false;    ///< false if the ray meets no surface; then the other members have no meaning
   uint32_t material = 0;  ///< SurfacePoint::material_id
   uint64_t instance = 0;  ///< SurfacePoint::instance_id
   Vec3 p, n;              ///< position and shading normal, unit, in world space
@@ -124,6 +123,7 @@ class OnePathIntegrator : public Integrator {
 struct IntegratorInfo : PluginInfo {
   /// Returns an integrator, not null. Throws InputError.
   std::unique_ptr<Integrator> (*make)(const Params&);
+  bool ignores_media = false;  ///< paths do not interact with the scene's media
 };
 
 }  // namespace frond

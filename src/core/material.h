@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "core/arena.h"
 #include "core/bsdf.h"
@@ -65,14 +66,40 @@ class Material {
   /// True if the material reads `derivatives` or the direction of shading.x of a hit. Its textures report their needs
   /// separately.
   virtual bool needs_details() const { return false; }
-  /// True if hits of the material count in the foliar ratio.
-  virtual bool is_leaf() const { return false; }
+};
+
+/// What a leaf material states about itself. The models of `leaf`, the selection, comparisons, swaps of all leaves and
+/// tables follow from these statements (scene/leaf_models.h).
+struct LeafModel {
+  /// Table in a file that the material reads by its parameter kTableFile.
+  enum class Table : uint8_t {
+    none,
+    shares,  ///< reflectance and transmittance by angle and wavelength, as CSV
+    modes,   ///< modes of a BSDF, as CSV or as FILE.leaf
+  };
+  /// Parameter with which the material has the same mean and less noise.
+  struct Variant {
+    std::string_view parameter, value;
+  };
+
+  static constexpr std::string_view kTableFile = "tablefile";
+
+  std::string_view reference = {};  ///< leaf model that this one approximates or equals; its own name: a reference
+  bool is_exact = false;       ///< the mean of its BSDF is the mean of the reference's
+  bool is_noisy = false;       ///< its BSDF is a random estimate
+  double cost = 0;             ///< CPU time of a path, relative to `leaf_lambert` (docs/selection.md); above 0
+  bool takes_wall_textures = false;  ///< textures may give the aspect ratios of inner walls
+  Table table = Table::none;
+  Variant quiet = {};    ///< empty: none
+  bool is_open = false;  ///< no model: the renderer replaces it by one; then no other member has a meaning
 };
 
 /// Plug-in record of a material.
 struct MaterialInfo : PluginInfo {
   /// Returns a material, not null. Throws InputError.
   std::unique_ptr<Material> (*make)(const Params&);
+  /// Statements of a leaf material; nullopt: the material is no leaf. Hits of leaves count in the foliar ratio.
+  std::optional<LeafModel> leaf = {};
 };
 
 /// `make` of a material class T with a constructor T(const Params&).

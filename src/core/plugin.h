@@ -55,6 +55,11 @@ class PluginTable {
       : kind_(kind), infos_(infos.begin(), infos.end()) {}
 
   void add(const Info& info) { infos_.push_back(&info); }
+  /// Replaces the plug-in of the same name, if there is one.
+  void replace(const Info& info) {
+    for (const Info*& known : infos_)
+      if (known->name == info.name) known = &info;
+  }
   const std::vector<const Info*>& all() const { return infos_; }
   std::string_view kind() const { return kind_; }
 

@@ -112,6 +112,7 @@ std::unique_ptr<Integrator> make_path(const Params& p) { return std::make_unique
 extern const IntegratorInfo path_integrator{
     {"integrator", "path", "Path tracing with light sampling and multiple importance sampling.",
      "Kajiya 1986; Veach and Guibas 1995", kPath},
-    make_path};
+    make_path,
+    true};
 
 }  // namespace frond

@@ -75,7 +75,6 @@ inline bool is_rough(const Bsdf& bsdf) { return any(bsdf.flags() & (Lobes::diffu
 /// Writes the members one by one: a copy of the whole would wait for these writes.
 inline void set_first_hit(const SurfacePoint& point, FirstHit& first) {
   first.is_hit = true;
-  first.is_leaf = point.material->is_leaf();
   first.material = point.material_id;
   first.instance = point.instance_id;
   first.p = point.hit.p;

@@ -83,7 +83,7 @@ class PathTracer final : public Tracer {
       path.previous = {path.ray.o, {0, 0, 1}};
       PathResult& result = bundle_->results[i];
       result.radiance = {};
-      result.first.is_hit = result.first.is_leaf = false;
+      result.first.is_hit = false;
       result.scatterings = 0;
       result.escaped = false;
       result.fault = {};

@@ -89,7 +89,7 @@ class VolPathTracer final : public Tracer {
   void begin() {
     PathResult& r = result();
     r.radiance = {};
-    r.first.is_hit = r.first.is_leaf = false;
+    r.first.is_hit = false;
     r.scatterings = 0;
     r.escaped = false;
     r.fault = {};

@@ -12,6 +12,7 @@
 #include "render/parts/part_file.h"
 #include "report/brf_chart.h"
 #include "report/chart.h"
+#include "scene/leaf_models.h"
 #include "study/compare/candidate.h"
 #include "system/machine.h"
 
@@ -52,8 +53,8 @@ constexpr JobParam kParams[] = {
              "MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate "
              "enough.",
              {.type = "MATERIAL", .excludes = "plot,checkpoint,resume"}),
-    JobParam("reference", text, "Reference leaf model of --compare.",
-             {.type = "MATERIAL", .default_value = "leaf_solved", .needs = "compare"}),
+    JobParam("reference", text, "Reference leaf model of --compare; by default the exact model without noise.",
+             {.type = "MATERIAL", .needs = "compare"}),
     JobParam("within", real, "Largest relative difference at which --compare calls a model accurate enough.",
              {.default_value = "0.02", .range = kAboveZero, .needs = "compare"}),
     kIgnoreUnsupportedParam,
@@ -229,7 +230,9 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
     return result;
   };
   const auto models = compare::parse_candidates(run.args.texts("compare"));
-  const ModelMeasurement reference = measured(compare::parse_candidate(run.args.text("reference")));
+  const std::string exact = run.args.given("reference") ? run.args.text("reference")
+                                                        : std::string(noiseless_model(run.session().registry()).name);
+  const ModelMeasurement reference = measured(compare::parse_candidate(exact));
   std::vector<ModelMeasurement> measurements;
   for (const compare::Candidate& model : models) measurements.push_back(measured(model));
   // Sorted by cost, so that the first sufficient model is the cheapest.
@@ -284,8 +287,9 @@ Result brf(const JobRun& run) {
 
 extern const JobInfo kBrfJob("brf", "Measure", "Measure the bidirectional reflectance factor of a scene from far away.",
                              "Under more than one sun, as with a sky, the result is the hemispherical-directional "
-                             "reflectance factor (HDRF). Leaves without \"incident\" use incident=reciprocal; abm uses "
-                             "incident=light.",
+                             "reflectance factor (HDRF). Leaves without \"incident\" use incident=reciprocal, or "
+                             "incident=light if their model is "
+                             "a random walk.",
                              kParams, SessionUse::all, brf);
 
 }  // namespace frond

@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <list>
+#include <ranges>
 
 #include "jobs/record/common_params.h"
 #include "jobs/support/shell_command.h"
 #include "scene/format/words.h"
+#include "scene/leaf_models.h"
 #include "study/choose/choice_report.h"
 #include "study/compare/measure.h"
 #include "study/compare/report/charts.h"
@@ -33,17 +35,15 @@ constexpr JobParam kParams[] = {
     JobParam("materials", texts,
              "Candidates, separated by ;: [LABEL:]MATERIAL[,parameter=value...], optionally followed by "
              "@wavelengths=PLUGIN or "
-             "@integrator=PLUGIN. The first is the baseline of speed-ups.",
-             {.type = "MATERIAL",
-              .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
-              .aliases = "models",
-              .decides = true}),
+             "@integrator=PLUGIN. The first is the baseline of speed-ups. By default every leaf model, from the most "
+             "expensive to the cheapest, and its variant with less noise.",
+             {.type = "MATERIAL", .aliases = "models", .decides = true}),
     JobParam("output", text, "Folder of the report: charts, tables, index.html. By default results are only printed.",
              {.type = "FOLDER", .aliases = "o", .path = PathUse::write}),
     JobParam("reference", text,
              "Candidate whose converged render is the reference. The default is the expectation of the analog "
              "random walk, with less noise.",
-             {.type = "MATERIAL", .default_value = "abm,mode=weighted", .decides = true}),
+             {.type = "MATERIAL", .decides = true}),
     JobParam("rms", numbers, "Report the cheapest candidate with this RMS error.",
              {.type = "NUMBER", .range = {1e-6, 1}, .decides = true}),
     JobParam("target", text,
@@ -97,11 +97,25 @@ std::array<double, 3> target_of(const Arguments& args) {
   return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
+/// Returns --materials, or all leaf models, the most expensive first, each with its variant of less noise.
+std::vector<std::string> candidates_of(const JobRun& run) {
+  if (run.args.given("materials")) return run.args.texts("materials");
+  const auto models = leaf_models(run.session().registry());
+  std::vector<std::string> texts;
+  for (const MaterialInfo* model : std::views::reverse(models)) {
+    texts.emplace_back(model->name);
+    if (const std::string quiet = quiet_text(*model); quiet != model->name) texts.push_back(quiet);
+  }
+  return texts;
+}
+
 /// Returns the plan of the arguments, with `setting` as defaults. Throws InputError for too many candidates.
 Plan plan_of(const JobRun& run, const Setting& setting) {
   const Arguments& args = run.args;
-  Plan plan{.reference = compare::parse_candidate(args.text("reference")),
-            .candidates = compare::parse_candidates(args.texts("materials"))};
+  const std::string reference =
+      args.given("reference") ? args.text("reference") : quiet_text(reference_model(run.session().registry()));
+  Plan plan{.reference = compare::parse_candidate(reference),
+            .candidates = compare::parse_candidates(candidates_of(run))};
   if (plan.candidates.size() > compare::kMostCurves)
     fail({}, "{} candidates are more than the {} that a chart can tell apart", plan.candidates.size(),
          compare::kMostCurves);
@@ -139,7 +153,8 @@ std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& st
   // Both kinds of error are those of the report.
   const std::string limit = run.args.flag("relative") ? "maxrelativerms" : "maxrms";
   SceneDescription description{study.description(), {}, {}, {}};  // without geometry, which the study's scene provides
-  const PluginText open{"leaf", {{"model", "auto"}, {limit, fmt::format("{}", rms)}}};
+  const PluginText open{std::string(open_leaf(study.registry()).name),
+                        {{"model", "auto"}, {limit, fmt::format("{}", rms)}}};
   apply_overrides({.swaps = study.swaps_to(open), .seed = study.seed()}, description, study.registry(), silent_log());
   const choose::ChoiceTask task{.session = study.session(),
                                 .description = description,

@@ -46,7 +46,7 @@ const std::string kFormatDoc = format_doc();
 const JobParam kParams[] = {
     JobParam(
         "material", texts,
-        "NAME[,parameter=value...]: material, as in abm,specimen=maize; for mitsuba a scene file (pbrt-v4 format).",
+        "NAME[,parameter=value...]: material, as in leaf,specimen=maize; for mitsuba a scene file (pbrt-v4 format).",
         {.type = "MATERIAL|SCENE", .scene = true, .decides = true, .positional = true, .required = true}),
     JobParam("format", text, kFormatDoc, {.choices = kFormatNames, .decides = true, .required = true}),
     JobParam("output", text, "File to write; - is standard output, for text formats only. For mitsuba a folder.",

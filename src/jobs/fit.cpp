@@ -12,10 +12,12 @@
 #include "jobs/support/fit_directions.h"
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/tissue/area_content.h"
+#include "materials/leaf_params.h"
 #include "report/chart.h"
 #include "report/fit_report.h"
 #include "report/text_output.h"
 #include "scene/format/tokenizer.h"
+#include "scene/leaf_models.h"
 #include "system/machine.h"
 
 namespace frond {
@@ -27,8 +29,7 @@ namespace {
 using enum ArgumentKind;
 
 constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] = {"on", "off"},
-                           kAbsorption[] = {"prospect", "baranoski"},
-                           kMaterials[] = {"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"};
+                           kAbsorption[] = {"prospect", "baranoski"};
 
 constexpr JobParam kParams[] = {
     JobParam("file", texts,
@@ -52,7 +53,7 @@ constexpr JobParam kParams[] = {
              {.decides = true}),
     JobParam("directions", text,
              "Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction "
-             "between it and leaf_solved with the fitted parameters.",
+             "between it and the fitted leaf.",
              {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "all-leaves"}),
     JobParam("angle", real, "Angle of incidence, if the file does not state it.",
              {.default_value = "8",
@@ -76,8 +77,8 @@ constexpr JobParam kParams[] = {
         {.type = "NAME=NUMBER", .decides = true}),
     JobParam("like", text, "Specimen used as a prior (standard deviation about one third).",
              {.choices = leaf::kSpecimenNames, .decides = true}),
-    JobParam("material", text, "Material type to write.",
-             {.default_value = "leaf", .choices = kMaterials, .decides = true}),
+    JobParam("material", text, "Leaf material to write.",
+             {.type = "MATERIAL", .default_value = "leaf", .decides = true}),
 };
 
 /// Units of contents that --fix accepts. "g/cm2" is last: the others end like it.
@@ -185,6 +186,22 @@ void check_values(const Arguments& args, const leaf::FitRequest& request, const 
          args.spelled("like"));
 }
 
+/// Returns the record of --material. Throws InputError if it is no leaf, or one without a leaf's parameters.
+const MaterialInfo& material_of(const JobRun& run) {
+  const std::string option = run.args.spelled("material"), name = run.args.text("material");
+  const Registry& registry = run.session().registry();
+  const MaterialInfo& material = registry.materials.get(name, {std::make_shared<const std::string>(option)});
+  if (!material.leaf) {
+    std::vector<std::string_view> leaves{open_leaf(registry).name};
+    for (const MaterialInfo* model : leaf_models(registry)) leaves.push_back(model->name);
+    fail({}, "{}: \"{}\" is no leaf; leaves are {}", option, name, fmt::join(leaves, ", "));
+  }
+  for (const Param& p : kLeafParams)
+    if (!find_param(material, p.name))
+      fail({}, "{}: \"{}\" has no parameter \"{}\", which a fitted leaf needs", option, name, p.name);
+  return material;
+}
+
 /// Throws InputError for a value that the material would refuse; warns of one that is probably in another unit.
 void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const MaterialInfo& material, const JobRun& run) {
   const std::string option = run.args.spelled("fix");
@@ -246,7 +263,7 @@ Result fit_one(const JobRun& run) {
   leaf::FitRequest request = request_of(args);
   request.measurements = std::move(measured.measurements);
   check_values(args, request, file.empty() ? Location{} : location_of(file));
-  const MaterialInfo& material = run.session().registry().materials.get(args.text("material"), {});
+  const MaterialInfo& material = material_of(run);
   check_fixed(request.fixed, material, run);
   const double start = cpu_seconds();
   const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
@@ -262,7 +279,8 @@ Result fit_one(const JobRun& run) {
   std::vector<Table> tables = fit_tables(report);
   std::string text = fit_text(report);
   if (args.given("directions")) {
-    tables.push_back(compare_directions(run, args.text("directions"), fit_words(report, "leaf_solved")));
+    tables.push_back(compare_directions(
+        run, args.text("directions"), fit_words(report, std::string(noiseless_model(run.session().registry()).name))));
     text += directions_text(tables.back());
   }
   return {.tables = std::move(tables),
@@ -323,7 +341,7 @@ Result fit_all(const JobRun& run) {
   if (args.given("plot")) fail({}, "{} draws one leaf: {} selects it", args.spelled("plot"), args.spelled("leaf"));
   // Errors in the options end the job before any file is read; errors of one leaf do not.
   const leaf::FitRequest request = request_of(args);
-  const MaterialInfo& material = run.session().registry().materials.get(args.text("material"), {});
+  const MaterialInfo& material = material_of(run);
   check_fixed(request.fixed, material, run);
   const std::vector<std::string> files = args.given("file") ? args.texts("file") : std::vector<std::string>{""};
   std::vector<LeafFitReport> leaves;

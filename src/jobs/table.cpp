@@ -12,26 +12,26 @@
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/constants.h"
 #include "materials/leaf_file.h"
-#include "materials/registry.h"
+#include "materials/leaf_params.h"
 #include "report/text_output.h"
 #include "scene/format/plugin_text.h"
+#include "scene/leaf_models.h"
 #include "system/machine.h"
 
 namespace frond {
 
-// `frond table`: tables of leaf_simplified and leaf_solved as files (docs/file_formats.md).
+// `frond table`: tables of leaf models as files (docs/file_formats.md).
 
 namespace {
 
 using enum ArgumentKind;
 
-constexpr std::string_view kSimplified = "leaf_simplified", kSolved = "leaf_solved";
 constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
 
 constexpr JobParam kParams[] = {
     JobParam("leaf", texts,
-             "MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name "
-             "leaf_simplified, for FILE.leaf leaf_solved.",
+             "MATERIAL,parameter=value,...: a leaf model that looks up a table, with the leaf's parameters; without a "
+             "name the one with a table of R and T, for FILE.leaf the one with a mode table.",
              {.type = "MATERIAL", .decides = true, .positional = true}),
     JobParam("specimen", text, "Specimen of the leaf; soybean by default.",
              {.choices = leaf::kSpecimenNames, .decides = true}),
@@ -53,7 +53,7 @@ constexpr JobParam kParams[] = {
     JobParam("equalsides", flag, "Write the mean of both sides, at angles up to 90 degrees.", {.decides = true}),
     JobParam(
         "output", text,
-        "File to write; - is standard output. FILE.leaf, of leaf_solved: for other programs (docs/file_formats.md).",
+        "File to write; - is standard output. FILE.leaf, of a mode table: for other programs (docs/file_formats.md).",
         {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
 };
 
@@ -88,19 +88,32 @@ void check_is_of_leaf(const std::string& name, const Arguments& args) {
     fail({}, "\"{}\" applies to renders, which compute their own table: use {}", name, found->second);
 }
 
+/// Leaf model of a table, and the leaf's parameters as text.
+struct TableLeaf {
+  const MaterialInfo& model;
+  PluginText text;
+
+  bool has_modes() const { return model.leaf->table == LeafModel::Table::modes; }
+};
+
 /// Parses the positional words: a material and its parameters. Throws InputError.
-PluginText leaf_of(const JobRun& run) {
+TableLeaf leaf_of(const JobRun& run) {
+  const Registry& registry = run.session().registry();
+  const MaterialInfo &with_shares = model_with(LeafModel::Table::shares, registry),
+                     &with_modes = model_with(LeafModel::Table::modes, registry);
   std::string text = material_text(run.args.texts("leaf"));
   const size_t end = text.find(',');
   const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
   if (text.empty() || text.substr(0, end).find('=') != std::string::npos)
-    text = std::string(is_leaf_file ? kSolved : kSimplified) + (text.empty() ? "" : ",") + text;
+    text = std::string((is_leaf_file ? with_modes : with_shares).name) + (text.empty() ? "" : ",") + text;
   PluginText leaf = parse_plugin_text(text, {});
-  if (is_leaf_file && leaf.name == kSimplified)
-    fail({}, "{}: a .leaf file is of {}, a table of {} is a .csv file", run.args.text("output"), kSolved, kSimplified);
-  if (leaf.name != kSimplified && leaf.name != kSolved)
-    fail({}, "\"{}\" is neither a material that looks up a table, {} or {}, nor name=value of a leaf", leaf.name,
-         kSimplified, kSolved);
+  const MaterialInfo* model = registry.materials.find(leaf.name);
+  if (!model || !model->leaf || model->leaf->table == LeafModel::Table::none)
+    fail({}, "\"{}\" is neither a material that looks up a table, as {} or {}, nor name=value of a leaf", leaf.name,
+         with_shares.name, with_modes.name);
+  if (is_leaf_file && model->leaf->table == LeafModel::Table::shares)
+    fail({}, "{}: a .leaf file is of {}, a table of {} is a .csv file", run.args.text("output"), with_modes.name,
+         model->name);
   if (run.args.given("specimen")) leaf.params.emplace_back("specimen", run.args.text("specimen"));
   std::map<std::string, std::string> given;
   for (const auto& [name, value] : leaf.params) {
@@ -108,7 +121,7 @@ PluginText leaf_of(const JobRun& run) {
     if (const auto [first, is_new] = given.emplace(name, value); !is_new)
       fail({}, "\"{}\" is given twice, as {} and as {}", name, first->second, value);
   }
-  return leaf;
+  return {*model, std::move(leaf)};
 }
 
 /// Returns --wavelengths in the given order. Throws InputError for duplicates.
@@ -145,11 +158,11 @@ Result write_table(const JobRun& run, const std::string& content, const std::str
 /// Returns a size rounded to kB of 1024 bytes.
 std::string kilobytes(size_t bytes) { return fmt::format("{} kB", (bytes + 512) / 1024); }
 
-/// Writes the table of leaf_simplified as CSV.
-Result make_shares_file(const JobRun& run, const PluginText& leaf) {
-  static constexpr PluginInfo kLeaf{"the table of", kSimplified, "", "", kLeafParams};
+/// Writes the table of shares as CSV.
+Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
+  const PluginInfo only_tissue{"the table of", leaf.model.name, "", "", kLeafParams};
   const Arguments& args = run.args;
-  leaf::TableRequest request{.params = LeafParams(params_of(kLeaf, leaf)).tissue(),
+  leaf::TableRequest request{.params = LeafParams(params_of(only_tissue, leaf.text)).tissue(),
                              .wavelengths_nm = wavelengths_of(args),
                              .theta_deg = angles_of(args),
                              .rays = int(args.count("rays")),
@@ -168,7 +181,7 @@ Result make_shares_file(const JobRun& run, const PluginText& leaf) {
                      leaf::summary(request, args.text("output"), table) + fmt::format(", {:.2g} s of CPU", seconds));
 }
 
-/// Writes the mode table of leaf_solved.
+/// Writes the mode table.
 Result make_modes_file(const JobRun& run, const Params& params) {
   const leaf::ModeTableRequest request{.params = LeafParams(params).tissue(),
                                        .wavelengths_nm = wavelengths_of(run.args),
@@ -206,14 +219,15 @@ void refuse(const Arguments& args, std::initializer_list<std::string_view> names
 
 /// The job: selects the file format by material and extension.
 Result table(const JobRun& run) {
-  const PluginText leaf = leaf_of(run);
+  const TableLeaf leaf = leaf_of(run);
   const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
-  if (leaf.name != kSolved || !is_leaf_file) refuse(run.args, {"depths"}, "a .leaf file of leaf_solved");
-  if (leaf.name == kSolved) {
+  if (!leaf.has_modes() || !is_leaf_file) refuse(run.args, {"depths"}, "a .leaf file");
+  if (leaf.has_modes()) {
     refuse(run.args, {"method", "angles", "rays", "seed", "equalsides"},
-           fmt::format("tables of {}; those of {} follow from its \"tolerance\"", kSimplified, kSolved));
-    const MaterialInfo& info = PluginTable<MaterialInfo>("material", builtin_materials()).get(kSolved, {});
-    return is_leaf_file ? make_leaf_file(run, params_of(info, leaf)) : make_modes_file(run, params_of(info, leaf));
+           fmt::format("tables of {}; those of {} follow from its \"tolerance\"",
+                       model_with(LeafModel::Table::shares, run.session().registry()).name, leaf.model.name));
+    const Params params = params_of(leaf.model, leaf.text);
+    return is_leaf_file ? make_leaf_file(run, params) : make_modes_file(run, params);
   }
   const std::string method = run.args.spelled("method");
   if (run.args.text("method") == "montecarlo")
@@ -227,8 +241,8 @@ Result table(const JobRun& run) {
 
 extern const JobInfo kTableJob(
     "table", "Leaf models", "Compute the table of a leaf material and write it to a file for its \"tablefile\".",
-    "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as "
-    "FILE.leaf the complete material for other programs.",
+    "R and T by angle and wavelength, as CSV; or the mode table of a BSDF, and as FILE.leaf the complete material for "
+    "other programs.",
     kParams, SessionUse::threads, table);
 
 }  // namespace frond

@@ -189,8 +189,6 @@ class Abm final : public Material {
     return arena.make<AbmBsdf>(lanes, absorption_);
   }
 
-  bool is_leaf() const override { return true; }
-
  private:
   LeafLanes leaf_at(const TexturePoint& at, const SampledWavelengths& lambda, Arena& arena) const {
     LeafLanes lanes;
@@ -248,6 +246,12 @@ class Abm final : public Material {
 extern const MaterialInfo abm_material{
     {"material", "abm", "Leaf by random walks through its cells (algorithmic BDF model).",
      "Baranoski and Rokne 1997; Baranoski 2006; Baranoski and Eng 2007", kAbm},
-    make_material<Abm>};
+    make_material<Abm>,
+    LeafModel{.reference = "abm",
+              .is_exact = true,
+              .is_noisy = true,
+              .cost = 1.77,
+              .takes_wall_textures = true,
+              .quiet = {"mode", "weighted"}}};
 
 }  // namespace frond

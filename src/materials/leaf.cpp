@@ -1,42 +1,23 @@
 #include <algorithm>
-#include <array>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
-#include "core/material.h"
+#include "core/leaf_models.h"
 #include "materials/leaf_params.h"
+#include "materials/registry.h"
 
 namespace frond {
-
-extern const MaterialInfo abm_material;
-extern const MaterialInfo leaf_lambert_material;
-extern const MaterialInfo leaf_simplified_material;
-extern const MaterialInfo leaf_solved_material;
-
 namespace {
 
 constexpr std::string_view kAuto = "auto";
 
-/// A leaf model; kLadder orders them from the cheapest to the most accurate.
-struct Model {
-  std::string_view name;
-  const MaterialInfo* info;
-};
-constexpr std::array kLadder{Model{"leaf_lambert", &leaf_lambert_material},
-                             Model{"leaf_simplified", &leaf_simplified_material},
-                             Model{"leaf_solved", &leaf_solved_material}, Model{"abm", &abm_material}};
-
-constexpr auto kModels = [] {
-  std::array<std::string_view, kLadder.size() + 1> names{kAuto};
-  std::ranges::transform(kLadder, names.begin() + 1, &Model::name);
-  return names;
-}();
 constexpr Param kOwn[] = {
     {.name = "model",
      .kind = ParamKind::string,
      .default_value = kAuto,
      .doc = "Leaf model. auto: frond render selects the cheapest that meets maxrms (docs/selection.md); other commands "
-            "use leaf_solved, or abm with weighted walks where a texture gives the aspect ratio of an inner wall.",
-     .choices = kModels},
+            "use leaf_solved, or abm with weighted walks where a texture gives the aspect ratio of an inner wall."},
     {.name = "maxrms",
      .kind = ParamKind::real,
      .default_value = 0.01,
@@ -57,32 +38,68 @@ bool has_wall_textures(const Params& p) {
   return leaf.epidermis_aspect() || leaf.spongy_aspect() || leaf.palisade_aspect();
 }
 
-/// The material of a model; for "auto", `leaf_solved`, or `abm` for the leaves that it refuses.
-const MaterialInfo& material_of(std::string_view model, const Params& p) {
-  if (model == kAuto) return has_wall_textures(p) ? abm_material : leaf_solved_material;
-  const auto found = std::ranges::find(kLadder, model, &Model::name);
-  if (found == kLadder.end()) throw std::logic_error("no leaf model is called " + std::string(model));
-  return *found->info;
+/// Record of `leaf` for some leaf models: their names are the choices of "model".
+class OpenLeaf : public MaterialInfo {
+ public:
+  explicit OpenLeaf(std::span<const MaterialInfo* const> materials);
+  OpenLeaf(const OpenLeaf&) = delete;
+
+  /// Returns the model of this name; for "auto" the cheapest that is exact and takes the textures of `p`.
+  const MaterialInfo& chosen(std::string_view model, const Params& p) const;
+
+ private:
+  std::vector<const MaterialInfo*> models_;  ///< by cost
+  const MaterialInfo* reference_;            ///< nullptr: none
+  std::vector<std::string_view> names_{kAuto};
+  std::vector<Param> own_params_{kLeaf.begin(), kLeaf.end()};
+};
+
+const MaterialInfo& OpenLeaf::chosen(std::string_view model, const Params& p) const {
+  if (model != kAuto) return **std::ranges::find(models_, model, [](const MaterialInfo* m) { return m->name; });
+  const auto found = std::ranges::find_if(models_, [this, textures = has_wall_textures(p)](const MaterialInfo* m) {
+    return reference_ && m->leaf->reference == reference_->name && m->leaf->is_exact &&
+           (m->leaf->takes_wall_textures || !textures);
+  });
+  if (found == models_.end()) throw std::logic_error("no leaf model is exact and takes textures of walls");
+  return **found;
 }
 
-ParsedParam weighted_walks() { return {"string", "mode", {}, {}, std::vector<std::string>{"weighted"}}; }
-
-/// Does not select a model, since a material has no access to the image: the renderer (docs/selection.md) replaces
-/// "auto" by a model's name before the material is made.
+/// Does not select a model by its error, since a material has no access to the image: the renderer (docs/selection.md)
+/// replaces "auto" by a model's name before the material is made.
 std::unique_ptr<Material> make_leaf(const Params& p) {
   // Read so that the parameters count as used; the renderer reads their values.
   (void)p.real("maxrms");
   if (p.given("maxrelativerms")) (void)p.real("maxrelativerms");
-  const MaterialInfo& info = material_of(p.string("model"), p);
-  const bool walks = &info == &abm_material;
-  return info.make(p.forwarded(info, walks ? std::vector{weighted_walks()} : std::vector<ParsedParam>{}));
+  const MaterialInfo& model = static_cast<const OpenLeaf&>(p.info()).chosen(p.string("model"), p);
+  const auto& [parameter, value] = model.leaf->quiet;
+  std::vector<ParsedParam> quiet;
+  if (!parameter.empty())
+    quiet.push_back({"string", std::string(parameter), {}, {}, std::vector<std::string>{std::string(value)}});
+  return model.make(p.forwarded(model, quiet));
+}
+
+OpenLeaf::OpenLeaf(std::span<const MaterialInfo* const> materials)
+    : MaterialInfo{{"material",
+                    "leaf",
+                    "Open leaf: replaced by the cheapest leaf model that meets a stated error of the image.",
+                    "docs/selection.md",
+                    {}},
+                   make_leaf,
+                   LeafModel{.is_open = true}},
+      models_(leaf_models(materials)),
+      reference_(reference_model(materials)) {
+  for (const MaterialInfo* m : models_) names_.push_back(m->name);
+  std::ranges::find(own_params_, "model", &Param::name)->choices = names_;
+  params = own_params_;
 }
 
 }  // namespace
 
-extern const MaterialInfo leaf_material{
-    {"material", "leaf", "Open leaf: replaced by the cheapest leaf model that meets a stated error of the image.",
-     "docs/selection.md", kLeaf},
-    make_leaf};
+const MaterialInfo& open_leaf_of(std::span<const MaterialInfo* const> materials) {
+  static std::mutex guard;
+  static auto& made = *new std::map<std::vector<const MaterialInfo*>, OpenLeaf>;  // records outlive all registries
+  const std::scoped_lock lock(guard);
+  return made.try_emplace({materials.begin(), materials.end()}, materials).first->second;
+}
 
 }  // namespace frond

@@ -161,7 +161,6 @@ class LeafLambert final : public Material {
   }
 
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
-  bool is_leaf() const override { return true; }
 
  private:
   // Angles of the adaxial side, then of the abaxial side in reverse, so that they ascend; a unifacial leaf is
@@ -237,6 +236,7 @@ class LeafLambert final : public Material {
 extern const MaterialInfo leaf_lambert_material{
     {"material", "leaf_lambert", "Lambertian leaf: one reflectance and one transmittance for each side and wavelength.",
      "The models of plant canopies, such as Verhoef 1984 (SAIL)", kLeafLambert},
-    make_material<LeafLambert>};
+    make_material<LeafLambert>,
+    LeafModel{.reference = "abm", .cost = 1, .table = LeafModel::Table::shares}};
 
 }  // namespace frond

@@ -122,7 +122,6 @@ class LeafSimplified final : public Material {
   }
 
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
-  bool is_leaf() const override { return true; }
 
  private:
   const leaf::TableSelection* selection(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const {
@@ -204,6 +203,7 @@ class LeafSimplified final : public Material {
 extern const MaterialInfo leaf_simplified_material{
     {"material", "leaf_simplified", "Leaf as three lobes, scaled by a table of reflectance and transmittance.",
      "Baranoski and Rokne, A Simplified Model for Light Interaction with Plant Tissue", kLeafSimplified},
-    make_material<LeafSimplified>};
+    make_material<LeafSimplified>,
+    LeafModel{.reference = "abm", .cost = 1.07, .table = LeafModel::Table::shares}};
 
 }  // namespace frond

@@ -76,7 +76,6 @@ class LeafSolved final : public Material {
   }
 
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
-  bool is_leaf() const override { return true; }
 
  private:
   using Selection = leaf::ModeLookup::Selection;
@@ -165,6 +164,7 @@ extern const MaterialInfo leaf_solved_material{
     {"material", "leaf_solved",
      "Leaf by the solution of abm's random walk: the BSDF that abm converges to, without noise.",
      "docs/leaf_models.md; the walk: Baranoski and Rokne 1997; Baranoski 2006; Baranoski and Eng 2007", kLeafSolved},
-    make_material<LeafSolved>};
+    make_material<LeafSolved>,
+    LeafModel{.reference = "abm", .is_exact = true, .cost = 1.15, .table = LeafModel::Table::modes}};
 
 }  // namespace frond

@@ -50,7 +50,6 @@ class Mix final : public Material {
     return materials_[0]->is_reciprocal() && materials_[1]->is_reciprocal() && !refracts();
   }
   bool refracts() const override { return materials_[0]->refracts() || materials_[1]->refracts(); }
-  bool is_leaf() const override { return materials_[0]->is_leaf() || materials_[1]->is_leaf(); }
 
  private:
   std::vector<std::shared_ptr<Material>> materials_;

@@ -1,6 +1,8 @@
 #include "materials/registry.h"
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 namespace frond {
 
@@ -12,7 +14,6 @@ extern const MaterialInfo dielectric_material;
 extern const MaterialInfo diffuse_material;
 extern const MaterialInfo diffuse_transmission_material;
 extern const MaterialInfo interface_material;
-extern const MaterialInfo leaf_material;
 extern const MaterialInfo leaf_lambert_material;
 extern const MaterialInfo leaf_simplified_material;
 extern const MaterialInfo leaf_solved_material;
@@ -20,25 +21,25 @@ extern const MaterialInfo measured_material;
 extern const MaterialInfo mix_material;
 extern const MaterialInfo thin_dielectric_material;
 
-// By name; docs/plugins.md and the lists of the command line keep this order.
+namespace {
+
+constexpr std::array kMaterials{
+    &abm_material,          &coated_conductor_material, &coated_diffuse_material,       &conductor_material,
+    &dielectric_material,   &diffuse_material,          &diffuse_transmission_material, &interface_material,
+    &leaf_lambert_material, &leaf_simplified_material,  &leaf_solved_material,          &measured_material,
+    &mix_material,          &thin_dielectric_material,
+};
+
+}  // namespace
+
+// docs/plugins.md and the lists of the command line keep the order by name.
 std::span<const MaterialInfo* const> builtin_materials() {
-  static constexpr std::array table{
-      &abm_material,
-      &coated_conductor_material,
-      &coated_diffuse_material,
-      &conductor_material,
-      &dielectric_material,
-      &diffuse_material,
-      &diffuse_transmission_material,
-      &interface_material,
-      &leaf_material,
-      &leaf_lambert_material,
-      &leaf_simplified_material,
-      &leaf_solved_material,
-      &measured_material,
-      &mix_material,
-      &thin_dielectric_material,
-  };
+  static const auto table = [] {
+    std::vector<const MaterialInfo*> materials(kMaterials.begin(), kMaterials.end());
+    materials.push_back(&open_leaf_of(kMaterials));
+    std::ranges::sort(materials, {}, &MaterialInfo::name);
+    return materials;
+  }();
   return table;
 }
 

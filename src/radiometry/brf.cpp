@@ -9,6 +9,7 @@
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
 #include "scene/format/plugin_text.h"
+#include "scene/leaf_models.h"
 
 namespace frond {
 namespace {
@@ -97,8 +98,9 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
   if (has_heavy_tails_)
     session.log().warn(
         {},
-        "a leaf's random walk (abm) takes the light's direction for incident: its noise has no bound, and "
-        "what is printed as standard error is too small; leaf_solved is the same leaf without noise");
+        fmt::format("a leaf's random walk ({}) takes the light's direction for incident: its noise has no bound, and "
+                    "what is printed as standard error is too small; {} is the same leaf without noise",
+                    reference_model(session.registry()).name, noiseless_model(session.registry()).name));
   const HorizontalIrradiance irradiance(scene_);
   for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
   size_t beams = 0;

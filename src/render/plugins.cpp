@@ -15,6 +15,7 @@ Registry load_registry(std::span<const std::string> files) {
   if (const char* folders = std::getenv("FROND_PLUGIN_PATH"))
     for (const auto& file : plugins_in(folders)) load_plugin(file, registry);
   for (const std::string& file : files) load_plugin(file, registry);
+  registry.materials.replace(open_leaf_of(registry.materials.all()));
   return registry;
 }
 

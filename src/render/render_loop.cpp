@@ -172,6 +172,10 @@ class Worker {
     return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
   }
 
+  bool is_leaf(const FirstHit& first) const {
+    return first.is_hit && first.material < job_.leaf_flags.size() && job_.leaf_flags[first.material];
+  }
+
   /// Adds the results `begin` to `end - 1` of the bundle to the tile.
   void add(int x, int y, size_t begin, size_t end) {
     const bool has_channels = format_.channels.means() + format_.channels.ids() > 0;
@@ -185,7 +189,7 @@ class Worker {
       ::new (&samples_[i]) FilmTile::Sample{
           is_black ? SensorResponse(std::array<double, 3>{}) : job_.wavelengths.sensor(path.radiance, lambda),
           double(weight),
-          path.first.is_leaf,
+          is_leaf(path.first),
           {offset.x + 0.5f, offset.y + 0.5f}};
       if (path.first.is_hit && has_channels) {
         Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
@@ -235,7 +239,8 @@ RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler
           .pixel_jitter = scene.has_pixel_jitter(),
           .wavelength_jitter = scene.has_wavelength_jitter(),
           .has_motion = scene.has_motion(),
-          .camera_motion = scene.camera_motion()};
+          .camera_motion = scene.camera_motion(),
+          .leaf_flags = scene.leaf_flags()};
 }
 
 RenderJob job_of(const Scene& scene) { return job_of(scene, scene.integrator(), scene.sampler(), scene.seed()); }

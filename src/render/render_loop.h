@@ -40,6 +40,7 @@ struct RenderJob {
   bool wavelength_jitter = true;  ///< false: all samples have the same wavelengths
   bool has_motion = false;        ///< rays need a time
   const CameraMotion* camera_motion = nullptr;  ///< nullptr: the camera stands still
+  std::span<const uint8_t> leaf_flags = {};  ///< by SurfacePoint::material_id: whether hits count as leaf; empty: none
 };
 
 /// A render of a scene as it is described. The scene must outlive the job.

@@ -6,6 +6,7 @@
 #include "core/stop.h"
 #include "scene/format/known_names.h"
 #include "scene/format/plugin_text.h"
+#include "scene/leaf_models.h"
 
 namespace frond {
 
@@ -211,7 +212,8 @@ class GeometryBuilder {
       check_emitter(result.geometry, where);
       result.area_light = uint32_t(*shape.area_light);
     }
-    if (resolver_.material(shape.material)->is_leaf()) warn_of_double_faces(result.geometry, where, log_);
+    (void)resolver_.material(shape.material);  // created on first use
+    if (is_leaf_[shape.material]) warn_of_double_faces(result.geometry, where, log_);
     return result;
   }
 
@@ -256,6 +258,7 @@ class GeometryBuilder {
 
   const SceneDescription& description_;
   const Registry& registry_;
+  const std::vector<uint8_t> is_leaf_ = leaf_flags(description_, registry_);  ///< by material
   SceneResolver& resolver_;
   const Interval shutter_;
   const ThreadPool& pool_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "scene/leaf_models.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
@@ -49,7 +50,7 @@ class Replacement {
 std::vector<size_t> swapped_materials(const SceneSettings& description, const MaterialSwap& swap,
                                       const Registry& registry) {
   if (swap.from == "*") {
-    auto leaves = Scene::leaf_materials(description, registry);
+    auto leaves = leaf_materials(description, registry);
     if (leaves.empty()) fail(swap.where, "swap: none of the scene's materials is a leaf");
     return leaves;
   }

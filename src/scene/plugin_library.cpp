@@ -1,6 +1,7 @@
 #include "scene/plugin_library.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/plugin_module.h"
 #include "system/build_check.h"
@@ -47,10 +48,27 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
 
 }  // namespace
 
+/// Throws InputError for leaf models with statements that cannot be.
+void check_leaves(std::span<const MaterialInfo* const> infos, const fs::path& file, const Registry& registry) {
+  for (const MaterialInfo* info : infos) {
+    if (!info->leaf || info->leaf->is_open) continue;
+    const auto refuse = [&](const std::string& what) {
+      fail({}, "plug-in \"{}\": the leaf model \"{}\" {}", file.string(), info->name, what);
+    };
+    if (!(info->leaf->cost > 0 && std::isfinite(info->leaf->cost)))
+      refuse(fmt::format("has a cost of {:g}: the CPU time of a path relative to leaf_lambert is needed",
+                         info->leaf->cost));
+    const MaterialInfo* reference = registry.materials.find(info->leaf->reference);
+    if (!reference || !reference->leaf || reference->leaf->reference != reference->name)
+      refuse(fmt::format("names \"{}\" as its reference, which is none", info->leaf->reference));
+  }
+}
+
 /// All symbols are bound at load time, so that a missing one is an error here and not during a render.
 void load_plugin(const fs::path& file, Registry& registry) {
   const PluginModule& module = module_of(SharedObject(file, "plug-in", SharedObject::Binding::now), file);
   add_all(module.materials, file, registry.materials);
+  check_leaves(module.materials, file, registry);
   add_all(module.integrators, file, registry.integrators);
   add_all(module.wavelengths, file, registry.wavelengths);
   add_all(module.cameras, file, registry.cameras);

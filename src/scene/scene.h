@@ -60,10 +60,6 @@ class Scene final : public World {
   /// InputError.
   static Interval shutter(const SceneSettings& description, const Registry& registry, const Log& log = silent_log());
 
-  /// Returns the indices of the materials that are leaves (Material::is_leaf). A mixture is not a leaf, but the
-  /// materials that it mixes may be. Throws InputError.
-  static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
-
   /// `cache`: folder for computed tables; empty: none are stored. `other`: a scene that differs only in materials,
   /// wavelengths, integrator and view; its geometry is shared regardless of the described shapes, and so are equal
   /// lights and materials. `shared` holds work common to such scenes. Throws InputError.
@@ -104,6 +100,8 @@ class Scene final : public World {
   std::optional<Vec2> period() const { return period_; }
   /// Returns the material with this index in the description; nullptr if it is unused.
   const Material* material(size_t index) const { return material_at_[index]; }
+  /// By index in the description: whether the material is a leaf, or a mixture with one.
+  std::span<const uint8_t> leaf_flags() const { return is_leaf_; }
   int samples_per_pixel() const { return samples_per_pixel_; }
   /// If false, all samples are at the centres of pixels and lens.
   bool has_pixel_jitter() const { return has_pixel_jitter_; }
@@ -133,6 +131,7 @@ class Scene final : public World {
   std::map<size_t, ParsedPlugin> material_plugins_;  ///< the plug-ins that they were created from
   std::vector<const Material*> material_at_;         ///< as `materials_`, for hits; nullptr: unused
   std::vector<uint8_t> is_detailed_;                 ///< by material index: whether hits need derivatives
+  std::vector<uint8_t> is_leaf_;                     ///< leaf_flags
   std::vector<const NormalBend*> bend_at_;           ///< by material index; nullptr: none
   Footprint footprint_;
   std::shared_ptr<const LightTable> lights_;

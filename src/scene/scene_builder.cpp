@@ -6,6 +6,7 @@
 #include "core/stop.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
+#include "scene/leaf_models.h"
 #include "scene/lights/shape_emitter.h"
 #include "scene/origin.h"
 #include "scene/pilot_rays.h"
@@ -45,12 +46,6 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   for (const ParsedParam& p : sensor_params(description))
     if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
   return made_by(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
-}
-
-/// A material with parameters of type material mixes others.
-bool is_mixture(const MaterialInfo& info) {
-  return std::any_of(info.params.begin(), info.params.end(),
-                     [](const Param& p) { return p.kind == ParamKind::material; });
 }
 
 }  // namespace
@@ -113,7 +108,7 @@ class SceneBuilder {
   void check_table_files(SceneResolver& resolver) {
     const Preparation preparation{*scene_.wavelengths_, pool_, log_, {}};
     for (const auto& [place, made] : resolver.materials())
-      if (find_param(description_.materials[place].plugin.params, "tablefile"))
+      if (reads_table(description_.materials[place].plugin, registry_))
         problems_.attempt([&] { made.material->prepare(preparation); });
   }
 
@@ -148,6 +143,7 @@ class SceneBuilder {
     scene_.material_at_.resize(description_.materials.size());
     scene_.is_detailed_.resize(description_.materials.size());
     scene_.bend_at_.resize(description_.materials.size());
+    scene_.is_leaf_ = leaf_flags(description_, registry_);
     for (const auto& [place, made] : scene_.materials_) {
       scene_.material_at_[place] = made.material.get();
       scene_.is_detailed_[place] = made.needs_details;
@@ -338,8 +334,17 @@ class SceneBuilder {
       table->interfaces.push_back({at(pair.inside), at(pair.outside)});
     table->of_camera = at(description_.camera_medium);
     scene_.media_ = std::move(table);
-    if (description_.has_media() && description_.integrator.name == "path")
-      log_.warn(description_.integrator.where, "integrator \"path\" ignores the scene's media; \"volpath\" does not");
+    if (const IntegratorInfo* info = registry_.integrators.find(description_.integrator.name);
+        info && info->ignores_media && description_.has_media())
+      log_.warn(description_.integrator.where,
+                fmt::format("integrator \"{}\" ignores the scene's media{}", info->name, other_integrator()));
+  }
+
+  /// Returns "; \"NAME\" does not" for the first integrator that takes media into account.
+  std::string other_integrator() const {
+    for (const IntegratorInfo* info : registry_.integrators.all())
+      if (!info->ignores_media) return fmt::format("; \"{}\" does not", info->name);
+    return {};
   }
 
   /// Lights that fail are reported together.
@@ -451,20 +456,6 @@ ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry) {
   const SceneOptions options = read_options(description);
   return make_wavelengths(options.wavelengths, options.wavelengths_where, description, registry);
-}
-
-/// A material can be tested for is_leaf only after it has been created.
-std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, const Registry& registry) {
-  const auto wavelengths =
-      make_wavelengths("smpte", {}, description, registry);  // whether a material is a leaf does not depend on them
-  SceneResolver resolver(description, registry, *wavelengths);
-  std::vector<size_t> leaves;
-  for (size_t i = 0; i < description.materials.size(); ++i) {
-    const ParsedPlugin& plugin = description.materials[i].plugin;
-    const MaterialInfo& info = registry.materials.get(plugin.name, plugin.where);
-    if (!is_mixture(info) && resolver.material(i)->is_leaf()) leaves.push_back(i);
-  }
-  return leaves;
 }
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,

@@ -7,7 +7,7 @@
 namespace frond {
 namespace {
 
-/// Parses "leaf=abm" or "leaf=abm,mode=analog". Throws InputError.
+/// Parses "leaf=MODEL" or "leaf=MODEL,parameter=value". Throws InputError.
 MaterialSwap parse_swap(const std::string& text, const Arguments& args) {
   const std::string option = args.spelled("swap");
   const size_t equals = text.find('=');

@@ -50,7 +50,7 @@ constexpr JobParam chart_param(std::string_view name, std::string_view doc, std:
 }
 
 inline constexpr JobParam kMaterialParam("material", ArgumentKind::texts,
-                                         "NAME[,parameter=value...]: material, as in abm,specimen=maize.",
+                                         "NAME[,parameter=value...]: material, as in leaf,specimen=maize.",
                                          {.type = "MATERIAL", .decides = true, .positional = true, .required = true});
 inline constexpr JobParam kWithParam("with", ArgumentKind::texts, "NAME[,parameter=value...]: one more material.",
                                      {.type = "MATERIAL", .decides = true});

@@ -215,11 +215,11 @@ std::string csv_beside(const std::filesystem::path& csv, std::string_view table)
 std::string material_text(const std::vector<std::string>& words) {
   if (words.empty()) return {};
   const std::string& text = words.front();
-  if (text.empty()) fail({}, "a material is needed, as in abm,specimen=maize");
+  if (text.empty()) fail({}, "a material is needed, as in leaf,specimen=maize");
   // After the name a blank is part of a value, such as a file's path.
   const size_t end = text.find_first_of("=, ");
   if (words.size() > 1 || (end != std::string::npos && text[end] == ' '))
-    fail({}, "a material is one word with commas, as in abm,specimen=maize: \"{}\" was given", fmt::join(words, " "));
+    fail({}, "a material is one word with commas, as in leaf,specimen=maize: \"{}\" was given", fmt::join(words, " "));
   return text;
 }
 

@@ -61,7 +61,7 @@ Table compare_directions(const JobRun& run, const std::string& path, const std::
     table.add("noise_per_sr", std::sqrt(s.noise / s.weight));
   }
   table.document("measured_per_sr", "mean f of the goniometer table, 1/sr");
-  table.document("fitted_per_sr", "mean f of leaf_solved with the fitted parameters, 1/sr");
+  table.document("fitted_per_sr", "mean f of the fitted leaf, 1/sr");
   table.document("rms_per_sr", "RMS difference of the two, 1/sr");
   table.document("noise_per_sr", "RMS of the standard errors of the goniometer table, 1/sr");
   return table;
@@ -72,7 +72,7 @@ std::string directions_text(const Table& directions) {
     return std::get<std::vector<double>>(directions.find(name)->values);
   };
   const auto& kinds = std::get<std::vector<std::string>>(directions.find("kind")->values);
-  std::string text = "by direction, leaf_solved against the goniometer table\n";
+  std::string text = "by direction, the fitted leaf against the goniometer table\n";
   for (const char* kind : {"BRDF", "BTDF"}) {
     double squares = 0, noise = 0, measured = 0, fitted = 0, count = 0;
     for (size_t i = 0; i < kinds.size(); ++i) {

@@ -5,7 +5,7 @@
 
 namespace frond {
 
-/// Compares a leaf material, given as text such as `leaf_solved,specimen=maize`, with a goniometer table of the file
+/// Compares a leaf material, given as text such as `leaf,specimen=maize`, with a goniometer table of the file
 /// `path` (materials/measured/goniometer_rows.h), row by row. Returns the table "directions": for each kind, incidence
 /// and wavelength the mean of f in the file and of the leaf, the RMS difference, and the RMS of the file's standard
 /// errors; rows with a projected solid angle count in proportion to it. Throws InputError.

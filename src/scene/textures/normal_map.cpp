@@ -137,7 +137,6 @@ class BentMaterial final : public Material {
     return bsdf ? arena.make<BentBsdf>(*bsdf, hit.shading, bent.shading) : nullptr;
   }
   bool needs_details() const override { return true; }
-  bool is_leaf() const override { return material_->is_leaf(); }
   bool refracts() const override { return material_->refracts(); }
 
  private:

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/log.h"
+#include "scene/leaf_models.h"
 #include "study/choose/choice_report.h"
 #include "study/choose/screening.h"
 
@@ -337,16 +338,18 @@ double Choice::samples_needed() const { return effort().samples; }
 double Choice::reference_samples_needed() const { return reference_effort().samples; }
 
 std::optional<Chosen> choose_models(const ChoiceTask& task, const Ladder& ladder, const Log& log) {
-  if (!has_open_leaf(task.description)) return {};
+  const Registry& registry = task.session.registry();
+  if (!has_open_leaf(task.description, registry)) return {};
   Pilot pilot(task, ladder);
   if (!pilot.has_colors()) {
-    log.warn({},
-             "a leaf's model is chosen by images of colours, and bands are none: leaves without \"model\" are "
-             "leaf_solved");
+    log.warn({}, fmt::format(
+                     "a leaf's model is chosen by images of colours, and bands are none: leaves without \"model\" are "
+                     "{}",
+                     noiseless_model(registry).name));
     return {};
   }
   Chooser chooser(pilot, task.is_question);
-  put_answers(pilot.open_choices(), chooser.run(), task.session.registry(), task.description);
+  put_answers(pilot.open_choices(), chooser.run(), registry, task.description);
   return Chosen{chooser.choice(), pilot.scene()};
 }
 

@@ -35,7 +35,7 @@ std::string answer_text(const Answer& a, const Choice& c) {
   return text;
 }
 
-/// "leaf_solved for near, abm for far; hero".
+/// "MODEL for near, OTHER for far; hero".
 std::string options_text(const Choice& c) {
   std::string text, wavelengths;
   for (const Answer& a : c.answers)

@@ -19,13 +19,14 @@ struct ModelOption {
   bool is_exact = false;
 };
 
-/// Options to select from. Each list is sorted from the cheapest on; its last option is exact. `leaf_solved` is exact
-/// too: `abm` converges to the same image, with more noise, and is an option only of leaves that `leaf_solved` refuses.
+/// Options to select from. Each list is sorted from the cheapest on; its last option is exact. Other options may be
+/// exact too: a leaf has those up to the first that it does not refuse.
 struct Ladder {
   std::vector<ModelOption> models, wavelengths;
 };
 
-/// Returns the models that the material `leaf` offers, and the wavelength strategies with colours.
+/// Returns the leaf models of the registry that have its reference (scene/leaf_models.h), and the wavelength strategies
+/// with colours.
 Ladder standard_ladder(const Registry& registry);
 
 }  // namespace frond::choose

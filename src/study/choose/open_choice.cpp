@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "core/log.h"
+#include "scene/leaf_models.h"
 #include "scene/overrides.h"
 #include "scene/resolver.h"
 #include "scene/scene_options.h"
@@ -12,8 +13,8 @@
 namespace frond::choose {
 namespace {
 
-bool is_open(const MaterialDescription& m) {
-  if (m.plugin.name != "leaf") return false;
+bool is_open(const MaterialDescription& m, const Registry& registry) {
+  if (m.plugin.name != open_leaf(registry).name) return false;
   const ParsedParam* model = find_param(m.plugin.params, "model");
   return !model || model->values == decltype(model->values){std::vector<std::string>{"auto"}};
 }
@@ -51,7 +52,9 @@ ErrorLimits limits_of(const Params& leaf) {
 
 }  // namespace
 
-bool has_open_leaf(const SceneSettings& description) { return std::ranges::any_of(description.materials, is_open); }
+bool has_open_leaf(const SceneSettings& description, const Registry& registry) {
+  return std::ranges::any_of(description.materials, [&](const auto& m) { return is_open(m, registry); });
+}
 
 bool names_wavelengths(const SceneSettings& description) { return find_param(description.options, "wavelengths"); }
 
@@ -62,7 +65,7 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
   SceneSettings tried = description;
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
-    if (!is_open(m)) continue;
+    if (!is_open(m, registry)) continue;
     const auto alike = std::ranges::find_if(leaves, [&](const OpenChoice& q) {
       const MaterialDescription& other = description.materials[q.materials.front()];
       return m.name.empty() && other.name.empty() && same_plugin(m.plugin, other.plugin);
@@ -71,7 +74,7 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
       alike->materials.push_back(i);
       continue;
     }
-    const Params params(registry.materials.get("leaf", m.plugin.where), split_bend(m.plugin, false), resolver);
+    const Params params(open_leaf(registry), split_bend(m.plugin, false), resolver);
     const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
     OpenChoice& open_choice = leaves.emplace_back(OpenChoice{name, {i}, limits_of(params), {}});
     add_options(open_choice, tried, registry, wavelengths, ladder.models);

@@ -40,7 +40,7 @@ struct OpenChoice {
 using Configuration = std::vector<size_t>;
 
 /// Whether a leaf's model is open.
-bool has_open_leaf(const SceneSettings& description);
+bool has_open_leaf(const SceneSettings& description, const Registry& registry);
 /// Whether the scene states a wavelength strategy.
 bool names_wavelengths(const SceneSettings& description);
 

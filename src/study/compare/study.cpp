@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "scene/leaf_models.h"
 #include "scene/resolver.h"
 #include "study/paired_films.h"
 
@@ -29,15 +30,15 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
 std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
 
 /// Candidates replace open leaves, so their requests are removed.
-void drop_requests(SceneSettings& description) {
+void drop_requests(SceneSettings& description, const Registry& registry) {
   for (MaterialDescription& m : description.materials)
-    if (m.plugin.name == "leaf")
+    if (m.plugin.name == open_leaf(registry).name)
       std::erase_if(m.plugin.params, [](const ParsedParam& p) { return p.name == "maxrms" || p.name == "model"; });
 }
 
 std::vector<std::string> leaf_names(const SceneSettings& description, const Registry& registry) {
   std::vector<std::string> names;
-  for (const size_t i : Scene::leaf_materials(description, registry))
+  for (const size_t i : leaf_materials(description, registry))
     if (const std::string name = name_of(description.materials[i]); std::ranges::find(names, name) == names.end())
       names.push_back(name);
   return names;
@@ -53,7 +54,7 @@ Study::Study(Session& session, SceneDescription description, const StudyOptions&
   apply_overrides({.wavelengths = options.wavelengths, .seed = options.seed}, description_, registry(), session.log());
   resize(description_.film, session.film(description_), options.size);
   film_ = session.film(description_);
-  drop_requests(description_);
+  drop_requests(description_, registry());
   leaves_ = options.leaves.empty() ? leaf_names(description_, registry()) : options.leaves;
   if (leaves_.empty()) fail({}, "{}: none of the materials is a leaf; --leaf names the one to replace", options.scene);
   if (options.leaves.empty()) swaps_.push_back({"*", {}});
