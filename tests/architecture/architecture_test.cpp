@@ -280,6 +280,38 @@ TEST(Architecture, TheRootHoldsWhatIsListedHere) {
   for (const std::string& name : found) EXPECT_TRUE(allowed.contains(name)) << name;
 }
 
+/// Names of the materials of src/materials that state to be leaf models (MaterialInfo::leaf).
+std::set<std::string> names_of_leaf_models() {
+  static const std::regex name(R"re(\{"material",\s*"(\w+)")re");
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kSrc / "materials")) {
+    if (entry.path().extension() != ".cpp") continue;
+    std::ifstream in(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    std::smatch match;
+    if (text.find("LeafModel{.reference") != text.npos && std::regex_search(text, match, name)) names.insert(match[1]);
+  }
+  return names;
+}
+
+/// What treats leaf models differently follows from their records, so that a model of a shared object is treated alike.
+TEST(Architecture, LeafModelsAreNamedByMaterialsAndExportsAlone) {
+  const std::set<std::string> names = names_of_leaf_models();
+  EXPECT_GE(names.size(), 4u);
+  std::string any;
+  for (const std::string& name : names) any += (any.empty() ? "" : "|") + name;
+  const std::regex literal("\"[^\"]*\\b(" + any + ")\\b[^\"]*\"");
+  EXPECT_TRUE(std::regex_search("run(\"material abm,mode=x\")", literal));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSrc)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string layer = layer_of(std::filesystem::relative(entry.path(), kSrc));
+    if (layer == "materials" || layer == "exports") continue;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);)
+      EXPECT_FALSE(std::regex_search(line, literal)) << entry.path() << ": " << line;
+  }
+}
+
 TEST(Architecture, CLI11IsIncludedOnce) {
   std::set<std::string> by;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kSrc)) {

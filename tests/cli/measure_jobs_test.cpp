@@ -19,7 +19,7 @@ TEST(MaterialText, IsOneWord) {
   EXPECT_THAT(error_of([] { material_text({""}); }), HasSubstr("a material is needed"));
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"abm", "specimen=maize"}, {"abm specimen=maize"}, {"specimen=maize", "thickness=1e-4"}})
-    EXPECT_THAT(error_of([&] { material_text(words); }), HasSubstr("one word with commas, as in abm,specimen=maize"));
+    EXPECT_THAT(error_of([&] { material_text(words); }), HasSubstr("one word with commas, as in leaf,specimen=maize"));
 }
 
 /// As when blanks separated the parameters: figures remain.

@@ -102,7 +102,7 @@ TEST(TableCommand, WritesALeafFileOverDepths) {
   EXPECT_THAT(written("10,0.1").err, HasSubstr("invalid range of depths, 10 to 0.1"));
   EXPECT_THAT(written("-1,10").err, HasSubstr("--depths: 2 numbers from 0 on"));
   EXPECT_THAT(table_command({"--wavelengths", "551", "--depths", "1,2", "-o", path + ".csv"}).err,
-              HasSubstr("--depths is for a .leaf file of leaf_solved"));
+              HasSubstr("--depths is for a .leaf file"));
   EXPECT_THAT(table_command({"leaf_simplified", "--wavelengths", "551", "-o", path}).err,
               HasSubstr("a .leaf file is of leaf_solved"));
   EXPECT_EQ(table_command({"--wavelengths", "551", "-o", path}).code, 0);
@@ -148,7 +148,7 @@ TEST(TableCommand, RefusesWhatItCannotDo) {
       {{"--wavelengths", "551", "thicknes=1"}, "has no parameter \"thicknes\"; did you mean \"thickness\"?"},
       {{"--wavelengths", "551", "thickness"}, "nor name=value of a leaf"},
       {{"abm", "--wavelengths", "551"},
-       "\"abm\" is neither a material that looks up a table, leaf_simplified or leaf_solved"},
+       "\"abm\" is neither a material that looks up a table, as leaf_simplified or leaf_solved"},
       {{"--wavelengths", "551", "specimen=maize", "--specimen", "soybean"},
        "\"specimen\" is given twice, as maize and as soybean"},
       {{"--wavelengths", "551", "--rays", "1e3"}, "--rays is for --method montecarlo"},

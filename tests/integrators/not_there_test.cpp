@@ -12,9 +12,9 @@ using testing::render_text;
 struct NotThere final : Material {
   explicit NotThere(const Params&) {}
   const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
-  bool is_leaf() const override { return true; }
 };
-const MaterialInfo kNotThere{{"material", "not_there", "", "", {}}, make_material<NotThere>};
+const MaterialInfo kNotThere{
+    {"material", "not_there", "", "", {}}, make_material<NotThere>, LeafModel{.reference = "not_there", .cost = 1}};
 
 /// Two spheres around the origin, the inner one within the view of the camera.
 constexpr const char* kSpheres = R"(

@@ -29,9 +29,19 @@ TEST(LeafMaterials, ShareTheParametersOfTheLeaf) {
   }
 }
 
-TEST(LeafMaterials, AreLeaves) {
-  EXPECT_TRUE(Ready("abm", {}).material().is_leaf());
-  EXPECT_TRUE(Ready("leaf_simplified", {kSolve}).material().is_leaf());
+TEST(LeafMaterials, RecordsHoldForTheirBsdfs) {
+  for (const MaterialInfo* info : builtin_materials()) {
+    if (!info->leaf || info->leaf->is_open) continue;
+    const Ready ready(info->name, {});
+    EXPECT_EQ(any(ready.bsdf().flags() & Lobes::stochastic), info->leaf->is_noisy) << info->name;
+    EXPECT_EQ(find_param(*info, LeafModel::kTableFile) != nullptr, info->leaf->table != LeafModel::Table::none)
+        << info->name;
+    if (!info->leaf->quiet.parameter.empty()) EXPECT_TRUE(find_param(*info, info->leaf->quiet.parameter));
+    const bool takes_walls = error_of([&] {
+                               Ready(info->name, {texture("spongyaspect", {"1:2"})});
+                             }).find("spongyaspect") == std::string::npos;
+    EXPECT_EQ(takes_walls, info->leaf->takes_wall_textures) << info->name;
+  }
 }
 
 TEST(LeafMaterials, RefuseWhatIsOutOfRange) {

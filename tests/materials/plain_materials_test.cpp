@@ -42,10 +42,5 @@ TEST(Mix, IsTheWeightedSum) {
   EXPECT_FLOAT_EQ(mix.bsdf().f(wo, down, rng)[0], 0.25f * 0.25f * kInvPi);
 }
 
-TEST(Mix, IsALeafWhereEitherIs) {
-  EXPECT_TRUE(Ready("mix", {words("materials", {"diffuse", "abm"})}).material().is_leaf());
-  EXPECT_FALSE(Ready("mix", {words("materials", {"diffuse", "diffuse"})}).material().is_leaf());
-}
-
 }  // namespace
 }  // namespace frond::test
