@@ -32,11 +32,14 @@ TEST(LeafMaterials, ShareTheParametersOfTheLeaf) {
 TEST(LeafMaterials, RecordsHoldForTheirBsdfs) {
   for (const MaterialInfo* info : builtin_materials()) {
     if (!info->leaf || info->leaf->is_open) continue;
-    const Ready ready(info->name, {});
+    Ready ready(std::string(info->name), {});
     EXPECT_EQ(any(ready.bsdf().flags() & Lobes::stochastic), info->leaf->is_noisy) << info->name;
-    EXPECT_EQ(find_param(*info, LeafModel::kTableFile) != nullptr, info->leaf->table != LeafModel::Table::none)
+    const auto declares = [&](std::string_view name) {
+      return std::ranges::find(info->params, name, &Param::name) != info->params.end();
+    };
+    EXPECT_EQ(declares(LeafModel::kTableFile), info->leaf->table != LeafModel::Table::none)
         << info->name;
-    if (!info->leaf->quiet.parameter.empty()) EXPECT_TRUE(find_param(*info, info->leaf->quiet.parameter));
+    EXPECT_TRUE(info->leaf->quiet.parameter.empty() || declares(info->leaf->quiet.parameter)) << info->name;
     const bool takes_walls = error_of([&] {
                                Ready(info->name, {texture("spongyaspect", {"1:2"})});
                              }).find("spongyaspect") == std::string::npos;
