@@ -37,8 +37,7 @@ TEST(LeafMaterials, RecordsHoldForTheirBsdfs) {
     const auto declares = [&](std::string_view name) {
       return std::ranges::find(info->params, name, &Param::name) != info->params.end();
     };
-    EXPECT_EQ(declares(LeafModel::kTableFile), info->leaf->table != LeafModel::Table::none)
-        << info->name;
+    EXPECT_EQ(declares(LeafModel::kTableFile), info->leaf->table != LeafModel::Table::none) << info->name;
     EXPECT_TRUE(info->leaf->quiet.parameter.empty() || declares(info->leaf->quiet.parameter)) << info->name;
     const bool takes_walls = error_of([&] {
                                Ready(info->name, {texture("spongyaspect", {"1:2"})});
