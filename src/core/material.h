@@ -84,10 +84,10 @@ struct LeafModel {
 
   static constexpr std::string_view kTableFile = "tablefile";
 
-  std::string_view reference = {};   ///< leaf model that this one approximates or equals; its own name: a reference
-  bool is_exact = false;             ///< the mean of its BSDF is the mean of the reference's
-  bool is_noisy = false;             ///< its BSDF is a random estimate
-  double cost = 0;                   ///< CPU time of a path, relative to `leaf_lambert` (docs/selection.md); above 0
+  std::string_view reference = {};  ///< leaf model that this one approximates or equals; its own name: a reference
+  bool is_exact = false;            ///< the mean of its BSDF is the mean of the reference's
+  bool is_noisy = false;            ///< its BSDF is a random estimate
+  double cost = 0;  ///< CPU time of a path, with `quiet`, relative to leaf_lambert (docs/selection.md); above 0
   bool takes_wall_textures = false;  ///< textures may give the aspect ratios of inner walls
   Table table = Table::none;
   Variant quiet = {};    ///< empty: none
