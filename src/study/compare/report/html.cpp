@@ -1,29 +1,15 @@
 #include "study/compare/report/html.h"
 
 #include <fmt/format.h>
+#include <half.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <vector>
 
 namespace frond::compare {
-namespace {
-
-uint16_t half_of(float value) {
-  constexpr float kLargest = 65504, kSmallestNormal = 0x1p-14f;
-  const auto sign = uint16_t(std::signbit(value) ? 0x8000 : 0);
-  const float x = std::isnan(value) ? 0 : std::min(std::abs(value), kLargest);
-  if (x < kSmallestNormal) return uint16_t(sign | uint16_t(std::lround(x * 0x1p24f)));
-  // Rounds the 13 discarded bits to even, then changes the exponent's bias from 127 to 15.
-  const auto bits = std::bit_cast<uint32_t>(x);
-  const uint32_t rounded = bits + 0xfff + ((bits >> 13) & 1);
-  return uint16_t(sign | uint16_t((rounded >> 13) - ((127 - 15) << 10)));
-}
-
-}  // namespace
 
 std::string html_text(std::string_view text) {
   std::string html;
@@ -61,9 +47,10 @@ std::string base64(std::span<const unsigned char> bytes) {
 std::string half_floats(std::span<const float> values) {
   std::vector<unsigned char> bytes;
   for (const float v : values) {
-    const uint16_t h = half_of(v);
-    bytes.push_back(static_cast<unsigned char>(h & 0xff));
-    bytes.push_back(static_cast<unsigned char>(h >> 8));
+    constexpr float kLargest = HALF_MAX;
+    const uint16_t bits = half(std::isnan(v) ? 0 : std::clamp(v, -kLargest, kLargest)).bits();
+    bytes.push_back(static_cast<unsigned char>(bits & 0xff));
+    bytes.push_back(static_cast<unsigned char>(bits >> 8));
   }
   return base64(bytes);
 }
