@@ -190,6 +190,7 @@ Result conform(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kConformJob("conform", "Materials", "Test whether a material obeys the laws of scattering.",
-                                 "Exit code 0: no law was found broken; 2: a law is broken.", kParams, SessionUse::all, conform);
+                                 "Exit code 0: no law was found broken; 2: a law is broken.", kParams, SessionUse::all,
+                                 conform);
 
 }  // namespace frond

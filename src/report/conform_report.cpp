@@ -141,12 +141,12 @@ bool ConformReport::all_hold() const { return std::ranges::all_of(findings, &Fin
 
 std::string conform_text(const ConformReport& r) {
   std::string text = fmt::format(
-      "{}\n{} nm; wo at {} deg from the normal, front and back; {}; {}; seed {}\n"
+      "{}\n{}; {} nm; wo at {} deg from the normal, front and back\n{}; seed {}\n"
       "{}. If every law holds, the probability that any is reported as broken is {:.2g}: a test fails below p = "
-      "{:.2g}. "
+      "{:.2g}.\n"
       "An error of the size called detectable is found with a probability of {:.0f} %.\n\n",
-      r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "),
-      counted(r.parameters.sets, "set of parameters", "sets of parameters"), samples_text(r), r.effort.seed,
+      r.material, counted(r.parameters.sets, "set of parameters", "sets of parameters"),
+      fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), samples_text(r), r.effort.seed,
       counted(r.findings.size(), "test"), r.effort.false_alarm_rate, r.level, 100 * kPower);
   if (r.all_hold() && !is_there(r)) text += "The surface is invisible: it has no BSDF to test.\n\n";
   const double factor = detectable_factor(r.findings);
