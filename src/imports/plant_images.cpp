@@ -28,10 +28,11 @@ std::string extension_of(std::string_view format) {
   return std::string(format);
 }
 
-float to_linear(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 float to_srgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
 
 }  // namespace
+
+float to_linear(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 std::string plain_name(std::string_view name) {
   constexpr size_t kLongest = 60;

@@ -65,6 +65,9 @@ class PlantImages {
   std::vector<std::filesystem::path> inputs_;
 };
 
+/// Returns the linear value of an sRGB-encoded one.
+float to_linear(float v);
+
 /// Returns a name with only letters, digits, _ and -, which every file system and scene file can hold; not empty.
 std::string plain_name(std::string_view name);
 

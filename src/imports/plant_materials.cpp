@@ -47,8 +47,9 @@ class MaterialWriter {
     out.alpha.push_back(alpha_parameter(m, name));
     text_.clear();
     const auto rule = std::ranges::find_if(rules_, [&m](const MaterialRule& r) { return matches(r.pattern, m.name); });
-    const std::string type = rule != rules_.end() ? ruled(*rule) : plain(m, name);
+    const std::string type = rule != rules_.end() ? ruled(*rule, m, name) : plain(m, name);
     out.types.push_back(type);
+    out.rules.push_back(rule != rules_.end() ? &*rule : nullptr);
     out.text += textures_ + fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"{}\n", name, type, text_);
     textures_.clear();
     add_normal_map(m, out);
@@ -71,10 +72,39 @@ class MaterialWriter {
     return result;
   }
 
-  std::string ruled(const MaterialRule& rule) {
+  std::string ruled(const MaterialRule& rule, const ImportedMaterial& m, const std::string& name) {
     used_rules_.insert(&rule);
     for (const ParsedParam& p : rule.material.params) text_ += "\n  " + parameter(p);
+    for (const MappedParam& p : rule.mapped) {
+      if (!images_.pixels(m.color_texture.image))
+        fail({}, "{}: \"{}\" has no image of its colour, which \"{}\" would follow", rule.text, m.name, p.name);
+      const std::string texture = name + "-" + p.name;
+      add_texture(name + "-brightness", "float", brightness(m.color_texture.image, m.name), m.color_texture, 1);
+      textures_ += fmt::format(
+          "Texture \"{}\" \"float\" \"mix\" \"float tex1\" {} \"float tex2\" {} \"texture amount\" \"{}-brightness\"\n",
+          texture, p.at_black, p.at_white, name);
+      text_ += fmt::format("\n  \"texture {}\" \"{}\"", p.name, texture);
+    }
     return rule.material.name;
+  }
+
+  /// Returns the path of the image of the mean of the linear channels of a colour.
+  std::string brightness(int32_t image, const std::string& name) {
+    std::string& path = brightness_[image];
+    if (!path.empty()) return path;
+    const ImageFile& file = *images_.pixels(image);
+    const size_t channels = file.image.channels.size() < 3 ? 1 : 3;
+    std::vector<float> values;
+    for (int y = 0; y < file.image.height; ++y) {
+      check_stop();
+      for (int x = 0; x < file.image.width; ++x) {
+        float sum = 0;
+        for (size_t c = 0; c < channels; ++c)
+          sum += file.is_encoded ? to_linear(file.image.at(x, y, c)) : file.image.at(x, y, c);
+        values.push_back(std::clamp(sum / float(channels), 0.f, 1.f));
+      }
+    }
+    return path = images_.grey(file.image.width, file.image.height, std::move(values), name + "-brightness");
   }
 
   /// Diffuse, or metal: glTF's alpha is the square of its roughness.
@@ -168,6 +198,7 @@ class MaterialWriter {
   std::string text_, textures_;
   std::set<std::string> names_;
   std::map<std::tuple<int32_t, bool, float, float>, std::string> opacities_;  ///< image, kind, factor, cutoff; paths
+  std::map<int32_t, std::string> brightness_;  ///< by image: paths
   std::set<const MaterialRule*> used_rules_;
 };
 
@@ -187,6 +218,7 @@ PlantMaterials plant_materials(const ImportedScene& scene, const std::vector<boo
     } else {
       out.names.push_back(scene.materials[i].name);
       out.types.emplace_back();
+      out.rules.emplace_back();
       out.alpha.emplace_back();
     }
   }

@@ -8,10 +8,17 @@
 
 namespace frond {
 
+/// Parameter whose texture is the brightness of the image of the model's colour, linear: `chlorophylla=@4:1`.
+struct MappedParam {
+  std::string name;
+  double at_black, at_white;
+};
+
 /// Material for those of a model whose name matches: `--leaf`.
 struct MaterialRule {
   std::string pattern;  ///< of the shell: * ? [a-z]
   ParsedPlugin material;
+  std::vector<MappedParam> mapped = {};
   std::string text;  ///< as given, for messages
 };
 
@@ -21,6 +28,7 @@ struct PlantMaterials {
   std::vector<std::string> names;  ///< by index: names in the scene file; of the model, for materials without triangles
   std::vector<std::string> types;  ///< by index: plug-ins
   std::vector<std::string> alpha;  ///< by index: parameter of shapes for the opacity, or ""
+  std::vector<const MaterialRule*> rules;  ///< by index: that has made the material, or nullptr
   LossList losses;
 };
 

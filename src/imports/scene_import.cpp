@@ -237,21 +237,38 @@ std::string stem_of(const fs::path& scene) {
   return is_quotable ? stem : plain_name(stem);
 }
 
-/// Returns the text of the losses. A material by --leaf replaces the surface of the model's.
-std::vector<std::string> left_out(const ImportedScene& scene, const PlantMaterials& materials,
-                                  const std::vector<MaterialRule>& rules) {
-  std::vector<std::string> texts;
+/// Writes the text of the losses into the summary. A material by --leaf replaces the surface of the model's.
+void add_losses(const ImportedScene& scene, const PlantMaterials& materials, const std::vector<MaterialRule>& rules,
+                ImportSummary& summary) {
   const auto is_replaced = [&rules](const std::string& name) {
     return std::ranges::any_of(rules, [&name](const MaterialRule& rule) { return matches(rule.pattern, name); });
   };
-  const auto add = [&](ImportedLoss loss) {
-    const bool is_of_material = !loss.materials.empty();
-    if (loss.is_surface) std::erase_if(loss.materials, is_replaced);
-    if (is_of_material == !loss.materials.empty()) texts.push_back(text_of(loss));
+  const auto add = [&](const ImportedLoss& loss) {
+    if (!loss.is_surface || loss.materials.empty()) return summary.left_out.push_back(text_of(loss));
+    ImportedLoss kept = loss, replaced = loss;
+    std::erase_if(kept.materials, is_replaced);
+    std::erase_if(replaced.materials, [&](const std::string& name) { return !is_replaced(name); });
+    if (!kept.materials.empty()) summary.left_out.push_back(text_of(kept));
+    if (!replaced.materials.empty()) summary.replaced.push_back(text_of(replaced));
   };
   for (const ImportedLoss& loss : scene.losses) add(loss);
   for (const ImportedLoss& loss : materials.losses.all()) add(loss);
-  return texts;
+  LossList colors;
+  for (size_t i = 0; i < materials.rules.size(); ++i)
+    if (materials.rules[i] && materials.rules[i]->mapped.empty() && scene.materials[i].color_texture.image >= 0)
+      colors.add_of(scene.materials[i].name, fmt::format("colour image {}", summary.images[i][0]));
+  for (const ImportedLoss& loss : colors.all()) summary.replaced.push_back(text_of(loss));
+}
+
+/// Returns the names of a material's images that are read: of colour, opacity and normals.
+std::array<std::string, 3> images_of(const ImportedScene& scene, const ImportedMaterial& m,
+                                     const std::string& alpha_parameter) {
+  const auto name = [&scene](const ImportedTexture& t) {
+    return t.image < 0 ? std::string() : scene.images[size_t(t.image)].name;
+  };
+  const bool has_map = alpha_parameter.starts_with(" \"texture");
+  const ImportedTexture& opacity = m.opacity_texture.image >= 0 ? m.opacity_texture : m.color_texture;
+  return {name(m.color_texture), has_map ? name(opacity) : "", name(m.normal_texture)};
 }
 
 /// Returns the summary of what is to be written.
@@ -264,13 +281,22 @@ ImportSummary summary_of(const ImportOptions& options, const ImportedScene& scen
                         .instances = geometry.instance_count(),
                         .objects = geometry.objects.size(),
                         .double_sheets = sheets,
-                        .left_out = left_out(scene, materials, options.rules),
                         .size = {size.x, size.y, size.z}};
+  const Vec3d least = geometry.least + geometry.origin;
+  summary.least = {least.x, least.y, least.z};
+  for (size_t i = 0; i < scene.materials.size(); ++i)
+    summary.images.push_back(images_of(scene, scene.materials[i], materials.alpha[i]));
+  add_losses(scene, materials, options.rules, summary);
   const auto count = [&summary](const std::vector<PlantMesh>& meshes) {
     for (const PlantMesh& mesh : meshes) summary.triangles[mesh.material] += mesh.triangles.size();
   };
   count(geometry.meshes);
-  for (const PlantObject& object : geometry.objects) count(object.meshes);
+  for (const PlantObject& object : geometry.objects) {
+    count(object.meshes);
+    size_t triangles = 0;
+    for (const PlantMesh& mesh : object.meshes) triangles += mesh.triangles.size();
+    summary.object_list.push_back({object.name, triangles, object.instances.size()});
+  }
   return summary;
 }
 
@@ -278,7 +304,7 @@ ImportSummary summary_of(const ImportOptions& options, const ImportedScene& scen
 
 ImportSummary import_scene(const ImportOptions& options, const Log& log,
                            const std::function<void(const ImportSummary&)>& accept) {
-  if (options.scene.extension() != ".pbrt")
+  if (!options.scene.empty() && options.scene.extension() != ".pbrt")
     fail({}, "the scene \"{}\" needs the extension .pbrt", options.scene.string());
   ImportedScene scene = read_model(options.model);
   add_geometry_losses(scene);
@@ -294,6 +320,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   const PlantMaterials materials = plant_materials(scene, used_materials(scene, geometry), options.rules, images, log);
   const ImportSummary summary = summary_of(options, scene, geometry, materials, sheets);
   accept(summary);
+  if (options.scene.empty()) return summary;
 
   std::vector<fs::path> inputs = images.inputs();
   inputs.push_back(options.model);

@@ -12,25 +12,36 @@ namespace frond {
 
 /// What `frond import` does with a model.
 struct ImportOptions {
-  std::filesystem::path model, scene;  ///< file to read, scene file to write
+  std::filesystem::path model, scene;  ///< file to read; scene file to write, or empty: nothing is written
   std::vector<MaterialRule> rules = {};
   double scale = 1;                            ///< scene units for one unit of the model
   bool z_is_up = false;                        ///< in the model; false: y
   std::vector<std::string> single_sided = {};  ///< patterns of material names whose second sheets are removed
 };
 
-/// What was written.
+/// Object with several instances.
+struct ImportedObject {
+  std::string name;
+  size_t triangles, instances;
+};
+
+/// What was written, or would be.
 struct ImportSummary {
   std::vector<std::string> materials;  ///< names in the scene file
   std::vector<size_t> triangles;       ///< by material; those of an object once
   std::vector<std::string> types;      ///< by material: "leaf (by --leaf)", "diffuse"
   size_t instances = 0, objects = 0;
   std::vector<DoubleSheet> double_sheets;  ///< material: index in `materials`
-  std::vector<std::string> left_out;
-  std::array<double, 3> size{};  ///< of the model, scene units
+  std::vector<std::string> left_out = {};
+  std::vector<std::string> replaced = {};  ///< properties without effect, because --leaf replaces the surface
+  std::vector<ImportedObject> object_list = {};
+  /// By material: names of the images of colour, opacity and normals, or "".
+  std::vector<std::array<std::string, 3>> images = {};
+  std::array<double, 3> size{};   ///< of the model, scene units
+  std::array<double, 3> least{};  ///< lower corner of its bounding box
 };
 
-/// Reads a model and writes it as a scene: SCENE.pbrt with camera and lights, SCENE-plant.pbrt with materials and
+/// Reads a model and, if a scene is given, writes it: SCENE.pbrt with camera and lights, SCENE-plant.pbrt with materials and
 /// shapes, and the folder SCENE-files with meshes and images. The files appear together after `accept`, which may
 /// throw. Throws InputError.
 ImportSummary import_scene(const ImportOptions& options, const Log& log,

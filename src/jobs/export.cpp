@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/messages/problems.h"
 #include "exports/format.h"
 #include "exports/mitsuba/scene_export.h"
 #include "instruments/given_wavelengths.h"
@@ -66,10 +67,13 @@ const JobParam kParams[] = {
              {.range = {2, kCounts.max}, .decides = true}),
     kSeedParam,
     kSwapParam,
-    kIgnoreUnsupportedParam,
+    JobParam("ignore-unsupported", text,
+             "For mitsuba: leave out what Mitsuba or frond lacks, or export the nearest, with a warning that states what "
+             "is lost: all of it, or a list of materials, cameras, textures, films, displacement.",
+             {.type = "KINDS", .decides = true, .implied = "all"}),
 };
 
-/// Throws InputError for a given option that the format does not use; the message names the formats that do.
+/// Throws InputErrors for all given options that the format does not use; the messages name the formats that do.
 void check_arguments(const Arguments& args, const ExportFormat& format) {
   constexpr std::pair<std::string_view, ExportOption> kOptions[] = {{"angles", ExportOption::angles},
                                                                     {"view-angles", ExportOption::views},
@@ -78,26 +82,35 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
   const auto uses = [](const ExportFormat& f, ExportOption option) {
     return std::ranges::count(f.options, option) > 0;
   };
+  Problems problems;
   for (const auto& [name, option] : kOptions) {
     if (!args.given(name) || uses(format, option)) continue;
     std::vector<std::string_view> others;
     for (const ExportFormat* f : export_formats())
       if (uses(*f, option)) others.push_back(f->name);
-    fail({}, "{} is for {} {}", args.spelled(name), args.spelled("format"), fmt::join(others, ", "));
+    problems.add(InputError({}, fmt::format("{} is for {} {}", args.spelled(name), args.spelled("format"),
+                                            fmt::join(others, ", "))));
   }
   if (args.text("output") == "-" && !format.is_text)
-    fail({}, "{} {} is no text: it cannot be written to standard output", args.spelled("format"), format.name);
+    problems.add(InputError({}, fmt::format("{} {} is no text: it cannot be written to standard output",
+                                            args.spelled("format"), format.name)));
+  problems.check();
 }
 
-/// Throws InputError for options of materials' formats, or of scenes.
+/// Throws InputErrors for options of materials' formats, or of scenes.
 void check_options(const Arguments& args, bool is_scene) {
   constexpr std::string_view kOfMaterials[] = {"angles", "view-angles", "view-azimuths", "rays", "seed"},
                              kOfScenes[] = {"swap", "ignore-unsupported"};
+  Problems problems;
+  const auto refuse = [&](std::string_view name, std::string_view what) {
+    if (args.given(name))
+      problems.add(InputError({}, fmt::format("{} {} {} mitsuba", args.spelled(name), what, args.spelled("format"))));
+  };
   for (const std::string_view name : kOfMaterials)
-    if (is_scene && args.given(name))
-      fail({}, "{} has no effect with {} mitsuba", args.spelled(name), args.spelled("format"));
+    if (is_scene) refuse(name, "has no effect with");
   for (const std::string_view name : kOfScenes)
-    if (!is_scene && args.given(name)) fail({}, "{} is for {} mitsuba", args.spelled(name), args.spelled("format"));
+    if (!is_scene) refuse(name, "is for");
+  problems.check();
 }
 
 /// Exports a scene.
@@ -114,7 +127,8 @@ Result export_scene(const JobRun& run) {
   SceneDescription description = read_scene(run, scenes_of(run, "material").front());
   apply_swaps(description, swaps_of(args), session.registry(), run.log());
   export_to_mitsuba(std::move(description), session.registry(),
-                    {args.text("output"), args.numbers("wavelengths"), files.front()}, session.pool(), run.log(),
+                    {args.text("output"), args.numbers("wavelengths"), files.front(), unsupported_of(args)},
+                    session.pool(), run.log(),
                     run.context.options().cache);
   return {};
 }

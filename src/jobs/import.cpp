@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "imports/scene_import.h"
 #include "jobs/record/common_params.h"
-#include "render/material_words.h"
+#include "scene/format/plugin_text.h"
 
 namespace frond {
 
@@ -27,12 +27,13 @@ constexpr JobParam kParams[] = {
              {.type = "FILE", .path = PathUse::read, .positional = true, .required = true}),
     JobParam("output", text,
              "Scene file to write, .pbrt, with a camera and lights. Materials and shapes go to NAME-plant.pbrt beside "
-             "it, meshes and images into the folder NAME-files.",
-             {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
+             "it, meshes and images into the folder NAME-files. Without it the command lists what the model contains.",
+             {.type = "FILE", .aliases = "o", .path = PathUse::write}),
     JobParam(
         "leaf", texts,
         "NAME=PLUGIN[,parameter=value...]: leaf material for the model's materials of this name, with * and ? for any "
-        "characters, as in \"leaf*=leaf,specimen=maize\".",
+        "characters, as in \"leaf*=leaf,specimen=maize\". A number that may be a texture can follow the brightness of "
+        "the image of the model's colour: chlorophylla=@4:1 is 4 where it is black, 1 where it is white.",
         {.type = "SWAP"}),
     JobParam("unit", text, "Length unit of the model, which is converted to metres; by default m, glTF's unit.",
              {.type = "UNIT", .choices = kUnits, .excludes = "scale"}),
@@ -45,15 +46,47 @@ constexpr JobParam kParams[] = {
     kStrictParam,
 };
 
+/// Parses `@BLACK:WHITE`. Throws InputError.
+MappedParam mapped_param(const std::string& name, const std::string& value, const PluginInfo& info,
+                         const std::string& rule) {
+  const size_t colon = value.find(':');
+  const auto black = parse_numbers(value.substr(1, colon == std::string::npos ? colon : colon - 1));
+  const auto white = colon == std::string::npos ? std::nullopt : parse_numbers(value.substr(colon + 1));
+  if (!black || !white || black->size() != 1 || white->size() != 1)
+    fail({}, "{}: {}={} is {}=@BLACK:WHITE, its values where the image of the colour is black and white, as in @4:1",
+         rule, name, value, name);
+  const Param* const param = find_param(info, name);
+  if (!param || param->kind != ParamKind::float_texture) {
+    std::vector<std::string_view> names;
+    for (const Param& p : info.params)
+      if (p.kind == ParamKind::float_texture) names.push_back(p.name);
+    fail({}, "{}: \"{}\" of \"{}\" takes no texture; those that do are {}", rule, name, info.name, fmt::join(names, ", "));
+  }
+  for (const double v : {black->front(), white->front()})
+    if (!param->range.contains(v))
+      fail({}, "{}: \"{}\" lies within {:g} and {:g}, {:g} was given", rule, name, param->range.min, param->range.max, v);
+  return {name, black->front(), white->front()};
+}
+
 /// Parses --leaf. Throws InputError.
 std::vector<MaterialRule> rules_of(const JobRun& run) {
   std::vector<MaterialRule> rules;
+  const Registry& registry = run.session().registry();
   for (const std::string& text : run.args.texts("leaf")) {
     const size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
       fail({}, "{} takes NAME=PLUGIN[,parameter=value...], \"{}\" was given", run.args.spelled("leaf"), text);
-    rules.push_back({text.substr(0, equals), parse_material(text.substr(equals + 1), run.session().registry()).plugin,
-                     run.args.spelled("leaf") + " " + text});
+    MaterialRule rule{.pattern = text.substr(0, equals), .material = {}, .text = run.args.spelled("leaf") + " " + text};
+    PluginText words = parse_plugin_text(text.substr(equals + 1), {});
+    const MaterialInfo& info = registry.materials.get(words.name, {});
+    std::erase_if(words.params, [&](const auto& p) {
+      if (!p.second.starts_with('@')) return false;
+      rule.mapped.push_back(mapped_param(p.first, p.second, info, rule.text));
+      return true;
+    });
+    rule.material.name = words.name;
+    set_params(words, info, {}, rule.material);
+    rules.push_back(std::move(rule));
   }
   return rules;
 }
@@ -78,6 +111,34 @@ void report_assumptions(const JobRun& run, const ImportOptions& options, const I
     run.log().info(fmt::format("{} is OBJ, which does not state them: {}; the plant is {:.4g} m high",
                                escaped(options.model.filename().string()), fmt::join(assumed, " and "),
                                summary.size[2]));
+}
+
+/// Warns of a height that no plant has.
+void report_unit(const JobRun& run, const ImportSummary& summary) {
+  constexpr double kTallest = 150, kLeast = 1e-3;  // m; the tallest tree has 116
+  const double height = summary.size[2], largest = std::ranges::max(summary.size);
+  if (run.args.given("unit") || run.args.given("scale") || (height <= kTallest && largest >= kLeast)) return;
+  std::vector<std::string> offers;
+  for (size_t i = 1; i < std::size(kUnits); ++i)
+    if (height > kTallest) offers.push_back(fmt::format("{} makes it {:.3g} m", kUnits[i], height * kMetres[i]));
+  if (offers.empty()) offers.push_back(fmt::format("{} takes metres for one unit", run.args.spelled("scale")));
+  run.log().warn({}, fmt::format("the model is {:.4g} m {}, which no plant is: {} {}", height > kTallest ? height : largest,
+                                 height > kTallest ? "high" : "large",
+                                 height > kTallest ? run.args.spelled("unit") : "", fmt::join(offers, ", ")));
+}
+
+/// Reports what a material by --leaf replaces, and how its colour image can vary the leaf.
+void report_replaced(const JobRun& run, const ImportSummary& summary) {
+  if (summary.replaced.empty()) return;
+  std::string text = fmt::format("without effect under {}, since the tissue of a leaf decides its look: {}; alpha and "
+                                 "normal maps are kept",
+                                 run.args.spelled("leaf"), fmt::join(summary.replaced, ", "));
+  const auto is_color = [](const std::string& what) { return what.starts_with("colour image"); };
+  if (std::ranges::any_of(summary.replaced, is_color))
+    text += fmt::format("; chlorophylla=@4:1 in {} lets the chlorophyll follow the brightness of that image, from 4 where "
+                        "it is black to 1 where it is white",
+                        run.args.spelled("leaf"));
+  run.log().info(text);
 }
 
 /// A warning for leaf materials, which --leaf has given; otherwise a note.
@@ -107,6 +168,8 @@ Result import_model(const JobRun& run) {
   options.single_sided = run.args.texts("single-sided");
   const auto accept = [&](const ImportSummary& found) {
     report_assumptions(run, options, found);
+    report_unit(run, found);
+    report_replaced(run, found);
     report_double_sheets(run, options, found);
     if (!found.left_out.empty()) run.log().warn({}, fmt::format("left out: {}", fmt::join(found.left_out, ", ")));
     run.context.log().check();
@@ -120,20 +183,47 @@ Result import_model(const JobRun& run) {
     run.check_stop();  // Ctrl-C ends the process that reads the model
     throw;
   }
-  Result result{.tables = {{"materials"}}};
+  const bool is_list = options.scene.empty();
+  Result result{.tables = {{"materials"}, {"objects"}}};
+  constexpr std::string_view kImages[] = {"color_image", "alpha_image", "normal_map"};
   for (size_t i = 0; i < summary.materials.size(); ++i) {
     if (summary.triangles[i] == 0) continue;
     result.tables[0].add("material", summary.materials[i]);
     result.tables[0].add("type", summary.types[i]);
     result.tables[0].add("triangles", double(summary.triangles[i]));
-    result.text += fmt::format("{}: {}, {} triangle{}\n", summary.materials[i], summary.types[i], summary.triangles[i],
+    result.text += fmt::format("{}: {}, {} triangle{}", summary.materials[i], summary.types[i], summary.triangles[i],
                                summary.triangles[i] == 1 ? "" : "s");
+    for (size_t k = 0; k < std::size(kImages); ++k) {
+      const std::string& image = summary.images[i][k];
+      constexpr std::string_view kWords[] = {"colour", "alpha", "normals"};
+      result.tables[0].add(std::string(kImages[k]), image);
+      if (is_list && !image.empty()) result.text += fmt::format(", {} from {}", kWords[k], escaped(image));
+    }
+    result.text += '\n';
   }
+  for (const ImportedObject& object : summary.object_list) {
+    result.tables[1].add("object", object.name);
+    result.tables[1].add("triangles", double(object.triangles));
+    result.tables[1].add("instances", double(object.instances));
+  }
+  constexpr size_t kMostListed = 20;
+  for (size_t i = 0; is_list && i < std::min(kMostListed, summary.object_list.size()); ++i)
+    result.text += fmt::format("object {}: {}, {}\n", escaped(summary.object_list[i].name),
+                               counted(summary.object_list[i].triangles, "triangle"),
+                               counted(summary.object_list[i].instances, "instance"));
   if (summary.objects > 0)
     result.text +=
         fmt::format("{} of {}\n", counted(summary.instances, "instance"), counted(summary.objects, "object"));
-  result.text += fmt::format("{}: {:.4g} x {:.4g} x {:.4g} m\n", options.scene.string(), summary.size[0],
-                             summary.size[1], summary.size[2]);
+  if (is_list) {
+    const auto& [least, size] = std::pair(summary.least, summary.size);
+    for (size_t k = 0; k < 3; ++k)
+      result.text += fmt::format("{}: {:.4g} to {:.4g} m\n", std::string_view("xyz").substr(k, 1), least[k],
+                                 least[k] + size[k]);
+    result.text += fmt::format("nothing is written: {} SCENE.pbrt writes a scene\n", run.args.spelled("output"));
+  } else {
+    result.text += fmt::format("{}: {:.4g} x {:.4g} x {:.4g} m\n", options.scene.string(), summary.size[0],
+                               summary.size[1], summary.size[2]);
+  }
   result.facts = {{"width", summary.size[0]},
                   {"depth", summary.size[1]},
                   {"height", summary.size[2]},
@@ -144,7 +234,7 @@ Result import_model(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kImportJob(
-    "import", "Scenes", "Write a plant model of another program, OBJ or glTF, as a scene.",
+    "import", "Scenes", "Write a plant model of another program, OBJ or glTF, as a scene, or list what it contains.",
     "The model is read in a process of its own; files that it names are read in its folder and below only. Names of "
     "materials, their colours, opacity and normal maps, and instances are kept.",
     kParams, SessionUse::plugins, import_model);

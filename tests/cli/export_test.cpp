@@ -10,6 +10,7 @@
 namespace frond {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -170,6 +171,8 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
   EXPECT_THAT(refusal({"leaf_solved", "--format", "radiance", "--angles", "8", "-o", out}),
               HasSubstr("--angles is for --format csv, npz, netcdf"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "npz", "--wavelengths", "551", "-o", "-"}), HasSubstr("no text"));
+  EXPECT_THAT(refusal({"leaf_solved", "--format", "radiance", "--angles", "8", "--rays", "100", "-o", out}),
+              AllOf(HasSubstr("--angles is for --format csv, npz, netcdf"), HasSubstr("--rays is for --format osl")));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "osl", "--wavelengths", "551", "-o", out}),
               HasSubstr("takes three wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved,incident=light", "--format", "osl", "-o", out}), HasSubstr("incident=light"));

@@ -163,6 +163,59 @@ TEST_F(ImportCommand, LeavesAreMaterialsByName) {
   EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*"}), HasSubstr("--leaf takes NAME=PLUGIN"));
 }
 
+/// A plane leaf with base colour, alpha and normal map.
+TEST_F(ImportCommand, WhatALeafMaterialReplacesIsNamed) {
+  folder_.write("leaf.png", png_with_alpha());
+  folder_.write("plant.mtl", "newmtl leaf\nmap_Kd leaf.png\nmap_d leaf.png\nnorm leaf.png\nKe 1 1 1\n");
+  folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl leaf\nf 1/1 2/2 3/3 4/4\n");
+  const Outcome o = imported("plant.obj", {"--leaf", "leaf=leaf_lambert", "--strict"});
+  EXPECT_THAT(o.err, AllOf(HasSubstr("without effect under --leaf"), HasSubstr("emission of \"leaf\""),
+                           HasSubstr("colour image leaf.png of \"leaf\""), HasSubstr("alpha and normal maps are kept"),
+                           HasSubstr("chlorophylla=@4:1 in --leaf")));
+  EXPECT_THAT(plant(), AllOf(HasSubstr("\"texture alpha\" \"leaf-alpha\""), HasSubstr("\"string normalmap\"")));
+}
+
+/// Green is 0.7 in sRGB, 0.4479 in linear values; the mean of the channels is a third of it.
+TEST_F(ImportCommand, ALeafFollowsTheBrightnessOfItsImage) {
+  folder_.write("leaf.png", png_with_alpha());
+  folder_.write("plant.mtl", "newmtl leaf\nmap_Kd leaf.png\n");
+  folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad +
+                                 "usemtl leaf\nf 1/1 2/2 3/3 4/4\nusemtl bare\nf 1 2 3\n");
+  const Outcome o = imported("plant.obj", {"--leaf", "leaf=leaf_lambert,specimen=maize,chlorophylla=@4:1"});
+  EXPECT_THAT(o.err, Not(HasSubstr("without effect")));
+  EXPECT_THAT(plant(), AllOf(HasSubstr("\"mix\" \"float tex1\" 4 \"float tex2\" 1 \"texture amount\" \"leaf-brightness\""),
+                             HasSubstr("\"texture chlorophylla\" \"leaf-chlorophylla\"")));
+  EXPECT_NEAR(read_image(path("scene-files/leaf-brightness.png"), {}).image.at(0, 0, 0), 0.4479f / 3, 0.003f);
+  const auto refused = [this](const std::string& leaf) { return refusal("plant.obj", {"--leaf", leaf}); };
+  EXPECT_THAT(refused("bare=leaf_lambert,chlorophylla=@4:1"), HasSubstr("\"bare\" has no image of its colour"));
+  EXPECT_THAT(refused("leaf=leaf_lambert,chlorophylla=@4"), HasSubstr("chlorophylla=@BLACK:WHITE"));
+  EXPECT_THAT(refused("leaf=leaf_lambert,specimen=@4:1"), HasSubstr("\"specimen\" of \"leaf_lambert\" takes no texture"));
+  EXPECT_THAT(refused("leaf=leaf_lambert,chlorophylla=@-4:1"), HasSubstr("-4 was given"));
+}
+
+TEST_F(ImportCommand, WithoutASceneTheContentIsListed) {
+  folder_.write("leaf.png", png_with_alpha());
+  folder_.write("plant.mtl", "newmtl leaf\nmap_Kd leaf.png\nmap_d leaf.png\nnewmtl stem\n");
+  folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad +
+                                 "v 0 0 250\nusemtl leaf\nf 1/1 2/2 3/3 4/4\nusemtl stem\nf 1 2 5\n");
+  const auto files = [this] {
+    return std::distance(fs::recursive_directory_iterator(path("")), fs::recursive_directory_iterator());
+  };
+  const auto before = files();
+  const Outcome o = frond_command({"import", path("plant.obj"), "--up", "z"});
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(files(), before);
+  EXPECT_THAT(o.out, AllOf(HasSubstr("leaf: diffuse, 2 triangles, colour from leaf.png, alpha from leaf.png\n"),
+                           HasSubstr("stem: diffuse, 1 triangle\n"), HasSubstr("z: 0 to 250 m\n"),
+                           HasSubstr("nothing is written")));
+  EXPECT_THAT(o.err, HasSubstr("the model is 250 m high, which no plant is: --unit cm makes it 2.5 m, mm makes it 0.25 m"));
+  EXPECT_THAT(frond_command({"import", path("plant.obj"), "--up", "z", "--unit", "cm"}).err, Not(HasSubstr("no plant")));
+  folder_.write("two.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":0,"translation":[2,0,0]})", "{\"name\":\"leaf\"}",
+                                 embedded()));
+  EXPECT_THAT(frond_command({"import", path("two.gltf")}).out, HasSubstr("object blade: 2 triangles, 2 instances\n"));
+  EXPECT_EQ(frond_command({"import", path("missing.obj")}).code, 1);
+}
+
 TEST_F(ImportCommand, UnitAndAxis) {
   folder_.write("plant.obj", "v 0 0 0\nv 0 0 250\nv 50 10 0\nf 1 2 3\n");
   const Outcome o = imported("plant.obj", {"--up", "z", "--unit", "cm"});

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "exports/mitsuba/scene_export.h"
+#include "image/image_file.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"
@@ -18,20 +19,47 @@
 namespace frond {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ContainsRegex;
+using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
 class MitsubaScene : public ::testing::Test {
  protected:
+  /// Keeps the warnings.
+  struct Warnings final : Log {
+    void info(std::string_view) const override {}
+    void warn(const Location& where, std::string_view message) const override {
+      all.push_back(where.text() + std::string(message));
+    }
+    mutable std::vector<std::string> all;
+  };
   /// Exports the scene and returns scene.xml.
-  std::string exported(const std::string& scene, const std::vector<double>& nm = {}) const {
+  std::string exported(const std::string& scene, const std::vector<double>& nm = {}, const std::string& ignored = "",
+                       const Log& log = silent_log()) const {
     ThreadPool pool(1);
     export_to_mitsuba(parse_scene_text(scene, FROND_SOURCE_DIR "/tests/pbrt_reference/s.pbrt", silent_log()),
-                      make_registry(builtin_materials(), builtin_integrators()), {folder_.name_of("out"), nm, "s.pbrt"},
-                      pool, silent_log(), {});
+                      make_registry(builtin_materials(), builtin_integrators()),
+                      {folder_.name_of("out"), nm, "s.pbrt", ignored.empty() ? Unsupported() : Unsupported(ignored)}, pool,
+                      log, {});
     return read_file_bytes(folder_.name_of("out/scene.xml"), {});
+  }
+  /// Writes a float image of 2 x 2 texels in three channels, and returns the quoted path.
+  std::string image(const std::string& name, const std::vector<float>& texels) const {
+    Image image(2, 2, {"R", "G", "B"});
+    image.pixels = texels;
+    write_image(folder_.name_of(name), image, {});
+    return '"' + folder_.name_of(name) + '"';
+  }
+  /// Reads the image of the named texture in scene.xml.
+  Image texture(const std::string& xml, const std::string& name) const {
+    size_t at = xml.find("<texture name=\"" + name + "\"");
+    EXPECT_NE(at, std::string::npos) << name << xml;
+    constexpr std::string_view kBegin = "name=\"filename\" value=\"";
+    at = xml.find(kBegin, at) + kBegin.size();
+    return read_image(folder_.name_of("out/" + xml.substr(at, xml.find('"', at) - at)), {}).image;
   }
   std::string refusal(const std::string& scene, const std::vector<double>& nm = {}) const {
     return error_of([&] { (void)exported(scene, nm); });
@@ -168,6 +196,120 @@ TEST_F(MitsubaScene, ATensorFileIsWrittenForItsVariants) {
   EXPECT_THAT(refusal(metal, {550}), HasSubstr("s.pbrt:5:39: Mitsuba's measured BSDF is not for mono variants"));
   EXPECT_THAT(refusal(world("Material \"measured\" \"string filename\" \"brushed.bsdf\"\nShape \"sphere\"\n")),
               HasSubstr("s.pbrt:5:39: an anisotropic measurement is not exported"));
+}
+
+constexpr const char* kCard =
+    "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 1 1 ]\n";
+
+/// Each has its place, and no folder remains.
+TEST_F(MitsubaScene, AllObstaclesAreReportedAtOnce) {
+  const std::string scene =
+      "Camera \"spherical\"\nFilm \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nIntegrator \"volpath\"\n"
+      "WorldBegin\nLightSource \"sky\"\nLightSource \"goniometric\" \"string filename\" " +
+      image("white.exr", std::vector<float>(12, 1)) +
+      "\nTexture \"t\" \"spectrum\" \"checkerboard\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" + kCard +
+      "Material \"coateddiffuse\"\nShape \"sphere\"\n"
+      "Material \"conductor\" \"float uroughness\" 0.1 \"float vroughness\" 0.2\nShape \"sphere\" \"float phimax\" 90\n" +
+      kCard;
+  const std::string message = refusal(scene);
+  EXPECT_THAT(message, AllOf(HasSubstr("s.pbrt:1:8: camera \"spherical\""), HasSubstr("s.pbrt:3:12: integrator \"volpath\""),
+                             HasSubstr("s.pbrt:5:13: light \"sky\""), HasSubstr("s.pbrt:6:13: light \"goniometric\""),
+                             HasSubstr("s.pbrt:7:24: texture \"checkerboard\""),
+                             HasSubstr("s.pbrt:10:10: material \"coateddiffuse\"")));
+  EXPECT_THAT(message, AllOf(HasSubstr("s.pbrt:12:10: a roughness that differs"),
+                             HasSubstr("s.pbrt:13:16: part of a sphere")));
+  EXPECT_EQ(std::ranges::count(message, '\n'), 7) << message;
+  EXPECT_FALSE(std::filesystem::exists(folder_.name_of("out")));
+  // With the option each is a warning.
+  const Warnings log;
+  const std::string xml = exported(scene, {}, "all", log);
+  for (const char* what : {"1:8: camera", "3:12: integrator", "5:13: light", "6:13: light", "7:24: texture",
+                           "10:10: material", "12:10: a roughness", "13:16: part"})
+    EXPECT_THAT(log.all, ::testing::Contains(HasSubstr(what)));
+  EXPECT_THAT(log.all, Each(Not(HasSubstr("--ignore"))));
+  EXPECT_THAT(xml, AllOf(HasSubstr("type=\"directional\""), HasSubstr("type=\"envmap\""),
+                         HasSubstr("type=\"frond_diffuse\" id=\"material-2\"")));
+  // Listed kinds only.
+  EXPECT_THAT(refusal(scene, {}), HasSubstr("coateddiffuse"));
+  const std::string some = error_of([&] { (void)exported(scene, {}, "materials,textures"); });
+  EXPECT_THAT(some, AllOf(Not(HasSubstr("coateddiffuse")), Not(HasSubstr("checkerboard")), HasSubstr("light \"sky\"")));
+}
+
+/// The map is outside of "twosided", which would mirror it on the back; its texels are those of the file.
+TEST_F(MitsubaScene, NormalMapsAreExported) {
+  const std::vector<float> normals{0.5f, 0.5f, 1, 0.6f, 0.5f, 0.9f, 0.5f, 0.4f, 0.9f, 0.4f, 0.6f, 0.9f};
+  const std::string xml = exported(
+      world("Material \"diffuse\" \"string normalmap\" " + image("normals.exr", normals) + "\n" + kCard));
+  EXPECT_THAT(xml, ContainsRegex("type=\"normalmap\" id=\"material-1\">[^$]*type=\"twosided\">[^$]*type=\"diffuse\""));
+  EXPECT_THAT(xml, HasSubstr("<matrix value=\"1 0 0 0 0 -1 0 1 0 0 1 0 0 0 0 1\"/>"));
+  EXPECT_EQ(texture(xml, "normalmap").pixels, normals);
+  EXPECT_THAT(refusal(world("Material \"diffuse\" \"string normalmap\" " + image("normals.exr", normals) +
+                            "\nShape \"sphere\"\n")),
+              HasSubstr("images on a sphere are not exported"));
+}
+
+/// Heights are in the scene's units, of which one is 100 here.
+TEST_F(MitsubaScene, BumpMapsAreExported) {
+  const std::string heights = image("heights.exr", {0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1});
+  const std::string xml = exported(world("Texture \"h\" \"float\" \"imagemap\" \"string filename\" " + heights +
+                                         " \"float scale\" 0.25\nMaterial \"diffuse\" \"texture displacement\" \"h\"\n" +
+                                         kCard));
+  EXPECT_THAT(xml, AllOf(HasSubstr("type=\"bumpmap\" id=\"material-1\""), HasSubstr("name=\"scale\" value=\"100\"")));
+  EXPECT_EQ(texture(xml, "map").at(1, 0, 0), 0.25f);
+  EXPECT_THAT(exported(world("Texture \"h\" \"float\" \"constant\" \"float value\" 2\nMaterial \"diffuse\" \"texture "
+                             "displacement\" \"h\"\n" +
+                             std::string(kCard))),
+              Not(HasSubstr("bumpmap")));
+}
+
+/// Products and mixtures of images with one mapping are images; others are refused, or their mean is taken.
+TEST_F(MitsubaScene, TexturesOfImagesAreTabulated) {
+  const std::string image = this->image("map.exr", {0, 0, 0, 1, 1, 1, 0.5f, 0.5f, 0.5f, 0.25f, 0.25f, 0.25f});
+  const auto leaf = [&](const std::string& more) {
+    return world("Texture \"i\" \"float\" \"imagemap\" \"string filename\" " + image +
+                 " \"string filter\" \"point\"\n"
+                 "Texture \"t\" \"float\" \"mix\" \"float tex1\" 1 \"float tex2\" 5 \"texture amount\" \"i\"\n" +
+                 more + kCard);
+  };
+  const std::string xml = exported(leaf("Material \"leaf_solved\" \"texture chlorophylla\" \"t\"\n"));
+  EXPECT_THAT(texture(xml, "chlorophylla").pixels, ::testing::ElementsAre(1, 5, 3, 2));
+  const std::string other =
+      leaf("Texture \"j\" \"float\" \"imagemap\" \"string filename\" " + image +
+           " \"float uscale\" 2\nTexture \"s\" \"float\" \"scale\" \"texture tex\" \"t\" \"texture scale\" \"j\"\n"
+           "Material \"leaf_solved\" \"texture chlorophylla\" \"s\"\n");
+  EXPECT_THAT(refusal(other), HasSubstr("images with different mappings"));
+}
+
+/// The shares of each texel are those of a leaf with its chlorophyll.
+TEST_F(MitsubaScene, ALambertianLeafFollowsItsTextures) {
+  const std::string image = this->image("map.exr", {2, 2, 2, 4, 4, 4, 2, 2, 2, 4, 4, 4});
+  const std::string xml = exported(world("Texture \"t\" \"float\" \"imagemap\" \"string filename\" " + image +
+                                         " \"string filter\" \"point\"\nMaterial \"leaf_lambert\" \"texture "
+                                         "chlorophylla\" \"t\"\n" +
+                                         kCard));
+  const Image reflectance = texture(xml, "reflectance"), back = texture(xml, "back_transmittance");
+  const std::string constant = exported(world("Material \"leaf_lambert\" \"float chlorophylla\" 4\n" + std::string(kCard)));
+  const size_t at = constant.find("<rgb name=\"reflectance\" value=\"");
+  double red = 0, green = 0;
+  ASSERT_EQ(std::sscanf(constant.c_str() + at, "<rgb name=\"reflectance\" value=\"%lf, %lf", &red, &green), 2);
+  EXPECT_NEAR(double(reflectance.at(1, 0, 1)), green, 2e-3) << "interpolated over the depth";
+  EXPECT_NEAR(double(reflectance.at(1, 0, 0)), red, 2e-3);
+  EXPECT_GT(reflectance.at(0, 0, 1), reflectance.at(1, 0, 1) + 0.01f);
+  EXPECT_GT(back.at(0, 0, 1), back.at(1, 0, 1) + 0.01f);
+}
+
+/// Mitsuba takes one environment.
+TEST_F(MitsubaScene, SurroundingLightsAreOneEmitter) {
+  const auto count = [](const std::string& xml, const std::string& what) {
+    size_t n = 0;
+    for (size_t at = 0; (at = xml.find(what, at)) != std::string::npos; ++at) ++n;
+    return n;
+  };
+  const std::string two = exported(world("LightSource \"infinite\"\nShape \"sphere\"\n"));
+  EXPECT_EQ(count(two, "type=\"constant\""), 1u);
+  const std::string sky = exported(world("LightSource \"sky\"\nShape \"sphere\"\n"), {}, "all");
+  EXPECT_EQ(count(sky, "type=\"constant\""), 0u);
+  EXPECT_EQ(count(sky, "type=\"envmap\""), 1u);
 }
 
 }  // namespace

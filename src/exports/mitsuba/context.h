@@ -3,15 +3,18 @@
 #include <set>
 
 #include "core/log.h"
+#include "core/messages/problems.h"
 #include "core/parallel.h"
 #include "exports/mitsuba/folder.h"
 #include "exports/mitsuba/spectra.h"
+#include "scene/format/unsupported.h"
 #include "scene/resolver.h"
 
 namespace frond::mitsuba {
 
-/// What the writers of an export's parts share. All throw InputError, at the scene file's position, for what Mitsuba
-/// has no equivalent of.
+/// What the writers of an export's parts share. They report what Mitsuba has no equivalent of by `lacks`, and go on with
+/// what stands for it, so that one run finds all of it; InputErrors of single materials, shapes and lights are collected
+/// in `problems`.
 struct Context {
   const SceneDescription& description;
   const Registry& registry;
@@ -21,6 +24,8 @@ struct Context {
   ThreadPool& pool;
   const Log& log;
   const std::filesystem::path& cache;
+  const Unsupported& unsupported;
+  Problems& problems;
   /// Mitsuba's units per unit of frond's scene. Mitsuba offsets ray origins by about 1e-4 (1 + the largest coordinate):
   /// with large units this is 1e-4 of the coordinates.
   double units = 1;
@@ -30,6 +35,16 @@ struct Context {
   /// Warns of a difference between both programs, once for each place.
   void warn(const Location& where, const std::string& message) {
     if (said.insert(where.text() + message).second) log.warn(where, message);
+  }
+  /// Reports what Mitsuba has no equivalent of: a warning if --ignore-unsupported lists its kind, otherwise an error.
+  /// `instead` says what is exported in its place, and what is lost. Returns whether it is a warning.
+  bool lacks(std::string_view kind, const Location& where, const std::string& what, std::string_view instead) {
+    const bool passes = unsupported.lets_pass(kind);
+    if (passes)
+      warn(where, fmt::format("{}: {}", what, instead));
+    else
+      problems.add(InputError(where, fmt::format("{}; with --ignore-unsupported {}", what, instead)));
+    return passes;
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "exports/mitsuba/materials.h"
 #include "exports/mitsuba/textures.h"
+#include "instruments/beam.h"
 
 namespace frond::mitsuba {
 namespace {
@@ -21,11 +22,26 @@ constexpr std::array kRefused{"pigments", "pigmentconcentrations", "tablefile", 
 /// True if the list has the name.
 bool contains(const auto& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); }
 
+/// A hit on the front of a flat leaf, or at the texture coordinates of a texel.
+Hit hit_at(Vec2 uv) {
+  Hit hit = flat_hit();
+  hit.at.uv = uv;
+  return hit;
+}
+
 }  // namespace
 
 /// Parameters of other leaf models than leaf_solved have no effect on the leaf itself, and are left out.
-bool write_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, const std::string& id) {
-  const Params p(context.registry.materials.get(plugin.name, plugin.where), plugin, context.resolver);
+bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
+  const auto& [plugin, p, id, index] = source;
+  bool is_refused = false;
+  for (const ParsedParam& given : plugin.params) {
+    if (!contains(kRefused, given.name)) continue;
+    context.lacks("materials", given.where,
+                  fmt::format("\"{}\" has no equivalent in Mitsuba's frond_leaf", given.name), kStandIn);
+    is_refused = true;
+  }
+  if (is_refused) return context.problems.empty() && write_stand_in(context, xml, source);
   if (plugin.name != "leaf_solved")
     context.warn(plugin.where,
                  fmt::format("\"{}\" becomes Mitsuba's frond_leaf, which is leaf_solved of the same leaf; "
@@ -37,16 +53,19 @@ bool write_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, const st
     xml.text("wavelengths", fmt::format("{:g}", fmt::join(context.spectra.wavelengths_nm(), ", ")));
   for (const ParsedParam& given : plugin.params) {
     const std::string& name = given.name;
-    if (contains(kRefused, name)) fail(given.where, "\"{}\" has no equivalent in Mitsuba's frond_leaf", name);
     if (contains(kWords, name)) xml.text(name, p.string(name));
     if (name == "sieve") xml.flag(name, p.boolean(name));
     if (name == "tolerance") xml.number(name, p.real(name));
     if (name == "spongyshare" || name == "cuticlerefractivity") {
       xml.number(name, p.real(name));
     } else if (contains(kContents, name) || contains(kNumbers, name)) {
-      const FloatValue value = float_value(context, plugin, p, name);
-      if (value.image && contains(kNumbers, name))
-        fail(given.where, "\"{}\" from an image has no equivalent in Mitsuba's frond_leaf", name);
+      FloatValue value = float_value(context, plugin, p, name);
+      if (value.image && contains(kNumbers, name)) {
+        context.lacks("textures", given.where,
+                      fmt::format("\"{}\" from an image has no equivalent in Mitsuba's frond_leaf", name),
+                      "its mean stands for it");
+        value = {mean_of(*value.map)};
+      }
       has_image |= value.image != nullptr;
       write_value(context, xml, name, value);
     }
@@ -54,29 +73,40 @@ bool write_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, const st
   return has_image;
 }
 
-/// The material itself computes the shares, which depend on its angle of incidence.
-void write_lambertian_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, size_t index,
-                           const std::string& id) {
-  const Params p(context.registry.materials.get(plugin.name, plugin.where), plugin, context.resolver);
+/// The material itself computes the shares, which depend on its angle of incidence. Where images vary it, its shares are
+/// images with the texels of the largest one.
+bool write_lambertian_leaf(Context& context, Xml& xml, const Materials::Source& source) {
+  const auto& [plugin, p, id, index] = source;
+  std::vector<std::string_view> varied;
   for (const ParsedParam& given : plugin.params)
-    if (given.type == "texture") fail(given.where, "a leaf_lambert with textures is not exported");
+    if (given.type == "texture") varied.push_back(given.name);
+  const TextureDescription* const image = common_image(context, plugin, p, varied);
   const std::shared_ptr<Material> material = context.resolver.material(index);
   material->prepare({context.spectra.strategy(), context.pool, context.log, context.cache});
   // f of a Lambertian leaf is a share over pi; frond_diffuse takes the side of the traced ray.
   const Vec3 above{0, 0, 1}, below{0, 0, -1};
-  const auto share = [&](const Vec3& wo, const Vec3& wi) {
+  Arena arena;
+  const auto share = [&, &material = *material](const Vec3& wo, const Vec3& wi, Vec2 uv) {
     return context.spectra.values([&](const SampledWavelengths& lambda) {
-      Arena arena;
+      arena.reset();
       RandomStream rng(0);
-      const Bsdf* bsdf = material->evaluate(Hit{}, lambda, arena);
+      const Bsdf* const bsdf = material.evaluate(hit_at(uv), lambda, arena);
       return bsdf->f(wo, wi, rng) * kPi;
     });
   };
   const Element bsdf(xml, "bsdf", {{"type", "frond_diffuse"}, {"id", id}});
-  context.spectra.write(xml, "reflectance", share(above, above));
-  context.spectra.write(xml, "transmittance", share(above, below));
-  context.spectra.write(xml, "back_reflectance", share(below, below));
-  context.spectra.write(xml, "back_transmittance", share(below, above));
+  const auto write = [&](std::string_view name, const Vec3& wo, const Vec3& wi) {
+    const auto at = [&](const TexturePoint& point) { return share(wo, wi, point.uv); };
+    if (image)
+      write_texels(context, xml, name, *image, at);
+    else
+      context.spectra.write(xml, name, varied.empty() ? at({}) : mean_over_uv(at));
+  };
+  write("reflectance", above, above);
+  write("transmittance", above, below);
+  write("back_reflectance", below, below);
+  write("back_transmittance", below, above);
+  return image != nullptr;
 }
 
 }  // namespace frond::mitsuba

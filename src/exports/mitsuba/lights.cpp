@@ -2,61 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/light.h"
+#include "exports/mitsuba/environment.h"
 #include "image/image_file.h"
+#include "scene/format/plugin_text.h"
 
 namespace frond::mitsuba {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
+/// Texels along a side of a square image of a sky, which is smooth but for its aureole.
+constexpr int kSkyTexels = 32;
 
 /// Values of a light at a point or in a direction, in Mitsuba's unit.
 template <class At>
 std::vector<double> emitted(const Context& context, double scale, const At& at) {
   return context.spectra.emission(context.spectra.values(at), scale * context.exposure);
-}
-
-/// Rows of the map by latitude and longitude for each row of the square image: its texels are then narrower.
-constexpr int kRowsPerRow = 16, kMostRows = 2048;
-
-/// Writes an image light as a map by latitude and longitude, because Mitsuba has no other.
-void write_environment(Context& context, Xml& xml, const EnvironmentLight& light, const Params& p,
-                       const ParsedPlugin& plugin, int texels) {
-  if (context.spectra.variants() == Variants::spectral)
-    fail(p.where("filename"), "images of lights are for mono and rgb variants: give one wavelength or three");
-  context.warn(plugin.where, "Mitsuba's environment map has other texels: the image is sampled again");
-  const bool is_mono = context.spectra.variants() == Variants::mono;
-  const int height = std::max(std::min(kRowsPerRow * texels, kMostRows), 2 * texels), width = 2 * height;
-  Image image(width, height, {"R", "G", "B"});
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      // Mitsuba: u = atan2(x, -z) / 2 pi, v = acos(y) / pi, at pixel centres.
-      const double phi = 2 * kPiD * (x + 0.5) / width, theta = kPiD * (y + 0.5) / height;
-      const Vec3 d =
-          to_float(Vec3d{std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)});
-      const auto values =
-          emitted(context, 1, [&](const SampledWavelengths& lambda) { return light.radiance({}, d, lambda); });
-      for (size_t c = 0; c < 3; ++c) image.at(x, y, c) = float(values[is_mono ? 0 : c]);
-    }
-  const Element emitter(xml, "emitter", {{"type", "envmap"}});
-  xml.text("filename", context.folder.add("textures", "sky", image));
-}
-
-/// Uniform or with an image.
-void write_infinite(Context& context, Xml& xml, const Light& light, const Params& p, const ParsedPlugin& plugin) {
-  if (p.given("portal")) fail(p.where("portal"), "a light with a portal has no equivalent in Mitsuba");
-  const auto& environment = dynamic_cast<const EnvironmentLight&>(light);
-  if (p.given("filename")) {
-    const Image image = read_image(p.file("filename"), p.where("filename")).image;
-    return write_environment(context, xml, environment, p, plugin, image.width);
-  }
-  const auto radiance = emitted(context, 1, [&](const SampledWavelengths& lambda) {
-    return environment.radiance({}, {0, 0, 1}, lambda);
-  });
-  const Element emitter(xml, "emitter", {{"type", "constant"}});
-  context.spectra.write(xml, "radiance", radiance);
 }
 
 /// Intensity of a light at a point, from the light that arrives at unit distance along `axis`.
@@ -86,13 +47,42 @@ void write_spot(Context& context, Xml& xml, const Light& light, const Params& p,
                            {double(frame.x.z), double(frame.y.z), double(frame.z.z), double(at.min.z) * units}}});
 }
 
+/// Makes a light that surrounds the scene, and adds it to those that are written together.
+void add_surroundings(Context& context, const LightDescription& description, std::vector<Surroundings>& all) {
+  ParsedPlugin plugin = description.plugin;
+  const LightInfo& info = context.registry.lights.get(plugin.name, plugin.where);
+  if (plugin.name == "sky" &&
+      !context.lacks("lights", plugin.where, "light \"sky\" has no equivalent in Mitsuba",
+                     "its sun becomes parallel light, which has no half-shadows and is not seen in mirrors, and its sky "
+                     "an image"))
+    return;
+  if (const ParsedParam* const portal = find_param(plugin.params, "portal")) {
+    context.lacks("lights", portal->where, "a light with a portal has no equivalent in Mitsuba",
+                  "the portal is left out: the light enters from everywhere");
+    std::erase_if(plugin.params, [](const ParsedParam& p) { return p.name == "portal"; });
+  }
+  const Params p(info, plugin, context.resolver);
+  Surroundings made{description, made_by(info, plugin.where, [&] { return info.make(p, description.world_from_light); })};
+  if (const auto* const file = find_param(plugin.params, "filename"))
+    made.texels = read_image(p.file("filename"), file->where).image.width;
+  else if (plugin.name == "sky")
+    made.texels = kSkyTexels;
+  if (made.texels > 0 && context.spectra.variants() == Variants::spectral &&
+      !context.lacks("lights", p.where(made.light->sun() ? "sky" : "filename"),
+                     "images of lights are for mono and rgb variants: give one wavelength or three",
+                     "its colours are kept, with smooth spectra that Mitsuba makes of them"))
+    return;
+  if (plugin.name == "infinite" && made.texels > 0)
+    context.warn(plugin.where, "Mitsuba's environment map has other texels: the image is sampled again");
+  all.push_back(std::move(made));
+}
+
 /// The light itself gives position, direction and intensity, with its scale or power.
 void write_light(Context& context, Xml& xml, const LightDescription& description) {
   const ParsedPlugin& plugin = description.plugin;
   const LightInfo& info = context.registry.lights.get(plugin.name, plugin.where);
   const Params p(info, plugin, context.resolver);
   const auto light = made_by(info, plugin.where, [&] { return info.make(p, description.world_from_light); });
-  if (plugin.name == "infinite") return write_infinite(context, xml, *light, p, plugin);
   if (plugin.name == "spot") return write_spot(context, xml, *light, p, plugin);
   if (plugin.name == "distant") {
     const auto irradiance = emitted(context, 1, [&](const SampledWavelengths& lambda) {
@@ -109,13 +99,22 @@ void write_light(Context& context, Xml& xml, const LightDescription& description
     xml.point("position", position * float(context.units));
     return context.spectra.write(xml, "intensity", intensity(context, *light, position, {0, 0, 1}));
   }
-  fail(plugin.where, "light \"{}\" has no equivalent in Mitsuba", plugin.name);
+  context.lacks("lights", plugin.where, fmt::format("light \"{}\" has no equivalent in Mitsuba", plugin.name),
+                "it is left out");
 }
 
 }  // namespace
 
 void write_lights(Context& context, Xml& xml) {
-  for (const LightDescription& light : context.description.lights) write_light(context, xml, light);
+  std::vector<Surroundings> surroundings;
+  for (const LightDescription& light : context.description.lights)
+    context.problems.attempt([&] {
+      if (light.plugin.name == "infinite" || light.plugin.name == "sky")
+        add_surroundings(context, light, surroundings);
+      else
+        write_light(context, xml, light);
+    });
+  if (context.problems.empty()) write_surroundings(context, xml, surroundings);
 }
 
 }  // namespace frond::mitsuba

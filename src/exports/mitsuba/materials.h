@@ -18,15 +18,21 @@ class Materials {
   /// True if a written material has an image, which needs texture coordinates.
   bool has_image(size_t index) const { return with_image_.contains(index); }
 
+  /// A material whose BSDF is written. The writers of materials.cpp's table return whether it has an image.
+  struct Source {
+    const ParsedPlugin& plugin;  ///< without normal and bump map
+    const Params& p;
+    const std::string& id;  ///< empty for the BSDF inside a normal map
+    size_t index;           ///< in the description
+  };
+  using Write = bool (*)(Context&, Xml&, const Source&);
+
  private:
   void write_plain(Xml& xml, const ParsedPlugin& plugin, const std::string& id, size_t index);
-  void write_diffuse(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id, size_t index);
-  void write_transmitting(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id, size_t index);
-  void write_conductor(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id);
-  void write_dielectric(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id);
-  void write_mix(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id, size_t index);
-  bool is_smooth(const ParsedPlugin& plugin);
-  double roughness(const ParsedPlugin& plugin, const Params& p);
+  void write_bent(Xml& xml, const ParsedPlugin& bend, const ParsedPlugin& plugin, const std::string& id, size_t index);
+  bool write_mix(Xml& xml, const Source& source);
+  std::vector<size_t> parts_of(const ParsedPlugin& plugin) const;
+  bool is_bent(size_t index) const;
 
   Context& context_;
   std::map<size_t, std::string> ids_;
@@ -34,12 +40,28 @@ class Materials {
   std::set<size_t> with_image_;
 };
 
-/// Writes an isotropic tensor file as Mitsuba's BSDF "measured". Throws InputError for other measurements, and for mono
+// Writers of single materials. All throw InputError, and return whether the material has an image.
+
+bool write_diffuse(Context& context, Xml& xml, const Materials::Source& source);
+bool write_transmitting(Context& context, Xml& xml, const Materials::Source& source);
+bool write_conductor(Context& context, Xml& xml, const Materials::Source& source);
+bool write_dielectric(Context& context, Xml& xml, const Materials::Source& source);
+bool write_interface(Context& context, Xml& xml, const Materials::Source& source);
+/// Writes an isotropic tensor file as Mitsuba's BSDF "measured"; a stand-in for other measurements, and in mono
 /// variants, which it is not for.
-void write_measured(Context& context, Xml& xml, const Params& p, const std::string& id);
-/// Writes a leaf as Mitsuba's plug-in frond_leaf, which is leaf_solved. Returns whether it has an image.
-bool write_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, const std::string& id);
+bool write_measured(Context& context, Xml& xml, const Materials::Source& source);
+/// Writes a leaf as Mitsuba's plug-in frond_leaf, which is leaf_solved.
+bool write_leaf(Context& context, Xml& xml, const Materials::Source& source);
 /// Writes leaf_lambert as Mitsuba's plug-in frond_diffuse, with the shares of both sides.
-void write_lambertian_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, size_t index, const std::string& id);
+bool write_lambertian_leaf(Context& context, Xml& xml, const Materials::Source& source);
+
+/// What stands for a material without an equivalent, for messages.
+inline constexpr std::string_view kStandIn =
+    "a Lambertian surface with its reflectance and transmittance at 8 degrees stands for it: its gloss is lost";
+/// Writes a Lambertian reflector and transmitter with the material's reflectance and transmittance at 8 degrees,
+/// averaged over its textures.
+bool write_stand_in(Context& context, Xml& xml, const Materials::Source& source);
+/// Returns whether a material reflects or transmits into single directions.
+bool is_smooth(Context& context, const ParsedPlugin& plugin);
 
 }  // namespace frond::mitsuba

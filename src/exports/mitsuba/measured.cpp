@@ -42,27 +42,32 @@ std::vector<float> at_wavelengths(const std::vector<float>& spectra, const std::
 
 /// Rgb variants read a field "rgb" instead of "spectra", and require a description and a flag, which frond does not
 /// read. Mitsuba's BSDF is black from behind; "twosided" makes it the same on both sides, as frond's is.
-void write_measured(Context& context, Xml& xml, const Params& p, const std::string& id) {
+bool write_measured(Context& context, Xml& xml, const Materials::Source& source) {
+  const Params& p = source.p;
   const std::filesystem::path path = p.file("filename");
   const Location where = p.where("filename");
   std::string content = read_file_bytes(path, where, "measured BSDF");
+  const auto stand_in = [&](const std::string& why) {
+    return context.lacks("materials", where, why, kStandIn) && write_stand_in(context, xml, source);
+  };
   if (!is_tensor_file(content))
-    fail(where,
-         "a table of a goniometer has no equivalent in Mitsuba, tensor files have; --swap replaces the material");
+    return stand_in(
+        "a table of a goniometer has no equivalent in Mitsuba, tensor files have; --swap replaces the material");
   const bool is_rgb = context.spectra.variants() == Variants::rgb;
   if (context.spectra.variants() == Variants::mono)
-    fail(where, "Mitsuba's measured BSDF is not for mono variants: give three wavelengths or more, or none");
+    return stand_in("Mitsuba's measured BSDF is not for mono variants: give three wavelengths or more, or none");
   const TensorFile file(std::move(content), path.string(), where);
   const Field &phi = file.floats("phi_i", 1), &spectra = file.floats("spectra", 5);
   if (phi.count > 2)
-    fail(where, "an anisotropic measurement is not exported: Mitsuba turns its back around the normal differently");
+    return stand_in(
+        "an anisotropic measurement is not exported: Mitsuba turns its back around the normal differently");
   const std::vector<float> nm = file.numbers(file.floats("wavelengths", 1));
   check_range({double(nm.front()), double(nm.back())}, context.spectra.strategy(), where, "filename");
 
   const Field& luminance = file.floats("luminance", 4);
   const size_t side = spectra.shape[4];
   if (spectra.shape[3] != side || luminance.shape[2] != side || luminance.shape[3] != side)
-    fail(where, "Mitsuba needs square grids of one size for \"luminance\" and \"spectra\" of a measured file");
+    return stand_in("Mitsuba needs square grids of one size for \"luminance\" and \"spectra\" of a measured file");
   const std::vector<uint8_t> one{1};
   std::vector<Field> fields{{"description", TensorFile::kUint8, {1}, 1, bytes_of(one)},
                             {"jacobian", TensorFile::kUint8, {1}, 1, bytes_of(one)},
@@ -86,10 +91,11 @@ void write_measured(Context& context, Xml& xml, const Params& p, const std::stri
     fields.push_back(spectra);
   }
   const std::string out = tensor_file_of(fields);
-  const Element both(xml, "bsdf", {{"type", "twosided"}, {"id", id}});
+  const Element both(xml, "bsdf", {{"type", "twosided"}, {"id", source.id}});
   const Element bsdf(xml, "bsdf", {{"type", "measured"}});
   xml.text("filename", context.folder.add("measured", path.stem().string(), "bsdf",
                                           {reinterpret_cast<const unsigned char*>(out.data()), out.size()}));
+  return false;
 }
 
 }  // namespace frond::mitsuba

@@ -20,12 +20,19 @@ double units_of(const Bounds& bounds) {
   return std::pow(10, std::max(0.0, std::ceil(std::log10(100 / radius))));
 }
 
-/// Throws InputError for options without an equivalent.
-void check_options(const SceneDescription& description, const Log& log) {
-  const SceneOptions options = read_options(description, log);
-  if (options.period) fail(options.period_where, "a periodic scene has no equivalent in Mitsuba");
+/// Reports options and media without an equivalent.
+void check_options(mitsuba::Context& context) {
+  const SceneDescription& description = context.description;
+  const SceneOptions options = read_options(description, context.log);
+  if (options.period)
+    context.lacks("shapes", options.period_where, "a periodic scene has no equivalent in Mitsuba",
+                  "one period is exported, with nothing around it");
   if (!options.has_pixel_jitter)
-    log.warn({}, "Option \"disablepixeljitter\" has no equivalent in Mitsuba: samples are spread over the pixel");
+    context.log.warn({},
+                     "Option \"disablepixeljitter\" has no equivalent in Mitsuba: samples are spread over the pixel");
+  if (description.has_media())
+    context.lacks("media", description.media.front().plugin.where, "participating media are not exported",
+                  "they are left out");
 }
 
 }  // namespace
@@ -34,9 +41,7 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
                        ThreadPool& pool, const Log& log, const std::filesystem::path& cache) {
   using namespace mitsuba;
   const Spectra spectra(request.wavelengths_nm);
-  if (description.has_media()) fail(description.media.front().plugin.where, "participating media are not exported");
   set_wavelengths(description, spectra.frond_wavelengths());
-  check_options(description, log);
   Scene::check(description, registry, pool, silent_log());
   const SceneOrigins origins = find_origins(description, log);
   if (origins.move_something) description = moved_to(origins, std::move(description), registry);
@@ -48,8 +53,10 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
       made_by(info, sampler.where, [&] { return info.make(Params(info, sampler, resolver), {}); })->samples_per_pixel();
 
   Folder folder(request.folder);
-  Context context{description, registry, resolver, spectra, folder, pool, log, cache};
+  Problems problems;
+  Context context{description, registry, resolver, spectra, folder, pool, log, cache, request.unsupported, problems};
   context.exposure = film.exposure;
+  check_options(context);
   Materials materials(context);
   Shapes shapes(context, materials);
   context.units = units_of(shapes.bounds());
@@ -73,6 +80,7 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
     write_lights(context, xml);
     shapes.write(xml);
   }
+  problems.check();
   folder.finish(xml.str());
 }
 

@@ -7,6 +7,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "scene/format/description.h"
+#include "scene/format/unsupported.h"
 #include "scene/registry.h"
 
 namespace frond {
@@ -16,10 +17,12 @@ struct MitsubaExport {
   std::filesystem::path folder;        ///< created if it does not exist
   std::vector<double> wavelengths_nm;  ///< one: mono variants; three, or none for 608, 551, 455: rgb; more: spectral
   std::string scene;                   ///< the scene file, for a comment
+  Unsupported unsupported = {};        ///< kinds that are left out or approximated, with a warning
 };
 
-/// Writes scene.xml, meshes and textures. What has no equivalent in Mitsuba throws InputError at its position in the
-/// scene file; differences are warned of. `description` must contain all overrides.
+/// Writes scene.xml, meshes and textures. Throws InputErrors with all that has no equivalent in Mitsuba, each at its
+/// position in the scene file, unless `unsupported` lets it pass; differences are warned of. `description` must contain
+/// all overrides.
 void export_to_mitsuba(SceneDescription description, const Registry& registry, const MitsubaExport& request,
                        ThreadPool& pool, const Log& log, const std::filesystem::path& cache);
 

@@ -28,9 +28,10 @@ AffineMap product(const AffineMap& a, const AffineMap& b) {
 }
 
 /// Returns a mesh of patches that are parallelograms, where patches and triangles have the same points and texture
-/// coordinates. Throws InputError for others.
-TriangleMesh parallelograms(const Params& p, const ShapePlacement& placement) {
-  if (p.given("N")) fail(p.where("N"), "a bilinear mesh with normals is not exported");
+/// coordinates. Others are reported.
+TriangleMesh parallelograms(Context& context, const Params& p, const ShapePlacement& placement) {
+  if (p.given("N"))
+    context.lacks("shapes", p.where("N"), "a bilinear mesh with normals is not exported", "they are left out");
   const std::vector<Vec3> corners = p.vec3s("P");
   std::vector<int> indices = p.integers("indices");
   if (indices.empty()) indices = {0, 1, 2, 3};
@@ -40,7 +41,8 @@ TriangleMesh parallelograms(const Params& p, const ShapePlacement& placement) {
     const auto corner = [&](size_t k) { return size_t(indices[i + k]); };
     const Vec3 a = corners[corner(0)], b = corners[corner(1)], c = corners[corner(2)], d = corners[corner(3)];
     if (length((a + d) - (b + c)) > 1e-6f * length(d - a))
-      fail(p.where("P"), "a bilinear patch that is no parallelogram has no equivalent in Mitsuba");
+      context.lacks("shapes", p.where("P"), "a bilinear patch that is no parallelogram has no equivalent in Mitsuba",
+                    "two triangles stand for it");
     const auto first = uint32_t(mesh.p.size());
     for (size_t k = 0; k < 4; ++k) {
       mesh.p.push_back(placement.to_scene.point(corners[corner(k)]));
@@ -82,23 +84,7 @@ Shapes::Shapes(Context& context, Materials& materials) : context_(context), mate
 /// Makes shapes as the scene builder does.
 Shapes::Parts Shapes::parts_of(const std::vector<ShapeDescription>& shapes, const InstanceList& instances) {
   Parts parts;
-  for (const ShapeDescription& shape : shapes) {
-    const Location& where = shape.plugin.where;
-    const ShapeInfo& info = context_.registry.shapes.get(shape.plugin.name, where);
-    const Params p(info, shape.plugin, context_.resolver);
-    const ShapePlacement placement{shape.world_from_object, shape.reverse_orientation};
-    if (shape.plugin.name == "bilinearmesh") {
-      parts.surfaces.push_back({&shape, std::make_shared<const TriangleMesh>(parallelograms(p, placement))});
-      continue;
-    }
-    MadeShape made = made_by(info, where, [&] { return info.make(p, placement); });
-    if (const auto* set = std::get_if<ObjectInstances>(&made)) {
-      add_table(*set, shape, p, parts);
-      continue;
-    }
-    for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made))
-      parts.surfaces.push_back({&shape, std::move(geometry)});
-  }
+  for (const ShapeDescription& shape : shapes) context_.problems.attempt([&] { add(shape, parts); });
   for (const Surface& surface : parts.surfaces)
     if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
       for (const Vec3& point : (*mesh)->p) parts.bounds.add(point);
@@ -107,11 +93,60 @@ Shapes::Parts Shapes::parts_of(const std::vector<ShapeDescription>& shapes, cons
       for (unsigned i = 0; i < shape.count(); ++i)
         parts.bounds.add(shape.bounds(i).min), parts.bounds.add(shape.bounds(i).max);
     }
-  for (const MovingInstance& moving : instances.moving)
-    fail(moving.where, "what moves has no equivalent in Mitsuba, where all shapes stand still");
+  for (const MovingInstance& moving : instances.moving) {
+    context_.lacks("shapes", moving.where, "what moves has no equivalent in Mitsuba, where all shapes stand still",
+                   "it stands where it is when the shutter opens");
+    parts.instances.push_back({moving.object, moving.start});
+  }
   for (size_t i = 0; i < instances.objects.size(); ++i)
     parts.instances.push_back({instances.objects[i], (*instances.maps)[i]});
   return parts;
+}
+
+/// A shape that has no equivalent is reported, and left out.
+void Shapes::add(const ShapeDescription& shape, Parts& parts) {
+  const Location& where = shape.plugin.where;
+  const std::string& name = shape.plugin.name;
+  const ShapeInfo& info = context_.registry.shapes.get(name, where);
+  const Params p(info, shape.plugin, context_.resolver);
+  const ShapePlacement placement{shape.world_from_object, shape.reverse_orientation};
+  if (name == "bilinearmesh") {
+    parts.surfaces.push_back({&shape, std::make_shared<const TriangleMesh>(parallelograms(context_, p, placement))});
+    return;
+  }
+  MadeShape made = made_by(info, where, [&] { return info.make(p, placement); });
+  if (const auto* set = std::get_if<ObjectInstances>(&made)) return add_table(*set, shape, p, parts);
+  for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made)) {
+    if (!std::holds_alternative<MeshPtr>(geometry)) {
+      const auto why = obstacle(shape, p);
+      if (why) context_.lacks("shapes", why->first, why->second, "it is left out");
+      if (why) return;
+    }
+    parts.surfaces.push_back({&shape, std::move(geometry)});
+  }
+}
+
+/// Returns why a shape that is no mesh has no equivalent, with the place: whole spheres, disks and cylinders under a
+/// similarity have one.
+std::optional<std::pair<Location, std::string>> Shapes::obstacle(const ShapeDescription& shape, const Params& p) {
+  const std::string& name = shape.plugin.name;
+  const Location& where = shape.plugin.where;
+  if (name != "sphere" && name != "disk" && name != "cylinder")
+    return {{where, fmt::format("shape \"{}\" has no equivalent in Mitsuba: meshes, spheres, disks and cylinders have",
+                                name)}};
+  if (p.real("phimax") != 360)
+    return {{p.where("phimax"), fmt::format("part of a {} has no equivalent in Mitsuba", name)}};
+  if (!AffineMap{shape.world_from_object.rows()}.area_scale())
+    return {{where, fmt::format("a {} whose transform stretches it has no equivalent in Mitsuba: rotations and scalings "
+                                "have",
+                                name)}};
+  if (name == "disk" && p.real("innerradius") != 0)
+    return {{p.where("innerradius"), "a ring has no equivalent in Mitsuba"}};
+  const double radius = p.real("radius");
+  if (name == "sphere" &&
+      ((p.given("zmin") && p.real("zmin") > -radius) || (p.given("zmax") && p.real("zmax") < radius)))
+    return {{p.where("zmin"), "part of a sphere has no equivalent in Mitsuba"}};
+  return {};
 }
 
 /// Columns of the table have no equivalent; textures that read them are refused.
@@ -151,14 +186,17 @@ void Shapes::write_materials(Xml& xml) {
 
 /// Objects without an instance are left out, as in frond.
 void Shapes::write(Xml& xml) {
-  for (const Surface& surface : world_.surfaces) write_surface(xml, surface, true);
+  const auto write_all = [&](const std::vector<Surface>& surfaces, bool is_in_world) {
+    for (const Surface& s : surfaces) context_.problems.attempt([&] { write_surface(xml, s, is_in_world); });
+  };
+  write_all(world_.surfaces, true);
   std::vector<bool> is_placed(objects_.size());
   for (const Placed& placed : placed_) is_placed[placed.object] = true;
   for (size_t i = 0; i < objects_.size(); ++i) {
     if (!is_placed[i]) continue;
     xml.comment("object " + context_.description.objects[i].name);
     const Element group(xml, "shape", {{"type", "shapegroup"}, {"id", fmt::format("object-{}", i)}});
-    for (const Surface& surface : objects_[i].surfaces) write_surface(xml, surface, false);
+    write_all(objects_[i].surfaces, false);
   }
   for (const Placed& placed : placed_) {
     const Element instance(xml, "shape", {{"type", "instance"}});
@@ -181,7 +219,9 @@ void Shapes::write_mesh(Xml& xml, const Surface& surface, const TriangleMesh& me
   const bool has_alpha_image =
       find_param(shape.plugin.params, "alpha") && find_param(shape.plugin.params, "alpha")->type == "texture";
   if (mesh.uv.empty() && (materials_.has_image(shape.material) || has_alpha_image))
-    fail(shape.plugin.where, "a mesh with images needs texture coordinates: Mitsuba's default differs from frond's");
+    context_.lacks("shapes", shape.plugin.where,
+                   "a mesh with images needs texture coordinates: Mitsuba's default differs from frond's",
+                   "its images lie on it differently");
   if (mesh.triangles.empty()) return;
   const Element element(xml, "shape", {{"type", "ply"}});
   const ParsedParam* file = find_param(shape.plugin.params, "filename");
@@ -193,26 +233,22 @@ void Shapes::write_mesh(Xml& xml, const Surface& surface, const TriangleMesh& me
   write_appearance(xml, surface);
 }
 
-/// Whole spheres, disks and cylinders under a similarity; others have no equivalent.
+/// Whole spheres, disks and cylinders under a similarity; others are not among the surfaces.
 void Shapes::write_quadric(Xml& xml, const Surface& surface, bool is_in_world) {
   const ShapeDescription& shape = *surface.shape;
   const std::string& name = shape.plugin.name;
   const Location& where = shape.plugin.where;
-  if (name != "sphere" && name != "disk" && name != "cylinder")
-    fail(where, "shape \"{}\" has no equivalent in Mitsuba: meshes, spheres, disks and cylinders have", name);
   const Params p(context_.registry.shapes.get(name, where), shape.plugin, context_.resolver);
   const double radius = p.real("radius");
-  if (p.real("phimax") != 360) fail(p.where("phimax"), "part of a {} has no equivalent in Mitsuba", name);
   if (materials_.has_image(shape.material))
-    fail(where, "images on a {} are not exported: its texture coordinates differ in Mitsuba", name);
+    context_.lacks("shapes", where,
+                   fmt::format("images on a {} are not exported: its texture coordinates differ in Mitsuba", name),
+                   "they lie on it differently");
   const AffineMap map{shape.world_from_object.rows()};
-  if (!map.area_scale())
-    fail(where, "a {} whose transform stretches it has no equivalent in Mitsuba: rotations and scalings have", name);
   const bool is_flipped = shape.reverse_orientation != shape.world_from_object.swaps_handedness();
   Transform::RowsDouble rows = rows_of(map);
   const Element element(xml, "shape", {{"type", name}});
   if (name == "disk") {
-    if (p.real("innerradius") != 0) fail(p.where("innerradius"), "a ring has no equivalent in Mitsuba");
     // Mitsuba's disk has radius 1, and its front looks to +z. A turned one has y and z reversed.
     const double turn = is_flipped ? -1 : 1, height = p.real("height");
     for (auto& row : rows) {
@@ -221,8 +257,6 @@ void Shapes::write_quadric(Xml& xml, const Surface& surface, bool is_in_world) {
     }
   } else {
     if (name == "sphere") {
-      if ((p.given("zmin") && p.real("zmin") > -radius) || (p.given("zmax") && p.real("zmax") < radius))
-        fail(p.where("zmin"), "part of a sphere has no equivalent in Mitsuba");
       xml.number("radius", radius);
     } else {
       xml.number("radius", radius);
@@ -240,10 +274,18 @@ void Shapes::write_appearance(Xml& xml, const Surface& surface) {
   const ShapeDescription& shape = *surface.shape;
   const ShapeInfo& info = context_.registry.shapes.get(shape.plugin.name, shape.plugin.where);
   const Params p(info, shape.plugin, context_.resolver);
-  const FloatValue alpha = float_value(context_, shape.plugin, p, "alpha");
-  const bool is_opaque = !alpha.image && alpha.constant == 1;
-  if (alpha.image && !std::holds_alternative<MeshPtr>(surface.geometry))
-    fail(p.where("alpha"), "an image as alpha is exported for meshes only");
+  FloatValue alpha = float_value(context_, shape.plugin, p, "alpha");
+  if (alpha.image && !std::holds_alternative<MeshPtr>(surface.geometry)) {
+    context_.lacks("shapes", p.where("alpha"), "an image as alpha is exported for meshes only",
+                   "its mean stands for it");
+    alpha = {mean_of(*alpha.map)};
+  }
+  bool is_opaque = !alpha.image && alpha.constant == 1;
+  if (shape.area_light && !is_opaque) {
+    context_.lacks("lights", p.where("alpha"), "an area light with alpha is not exported: it differs in Mitsuba",
+                   "its surface is opaque");
+    is_opaque = true;
+  }
   if (is_opaque) {
     xml.reference(materials_.id(shape.material));
   } else {
@@ -251,20 +293,28 @@ void Shapes::write_appearance(Xml& xml, const Surface& surface) {
     write_value(context_, xml, "opacity", alpha);
     xml.reference(materials_.id(shape.material));
   }
-  if (!shape.area_light) return;
-  if (!is_opaque) fail(p.where("alpha"), "an area light with alpha is not exported: it differs in Mitsuba");
-  write_area_light(xml, shape);
+  if (shape.area_light) write_area_light(xml, shape);
 }
 
 /// Lights of one directive are written once for each shape.
 void Shapes::write_area_light(Xml& xml, const ShapeDescription& shape) {
   const ParsedPlugin& plugin = context_.description.area_lights[*shape.area_light];
-  if (plugin.name != "diffuse") fail(plugin.where, "area light \"{}\" has no equivalent in Mitsuba", plugin.name);
+  if (plugin.name != "diffuse") {
+    context_.lacks("lights", plugin.where, fmt::format("area light \"{}\" has no equivalent in Mitsuba", plugin.name),
+                   "its surface does not emit");
+    return;
+  }
   const Params p(context_.registry.area_lights.get(plugin.name, plugin.where), plugin, context_.resolver);
-  if (p.given("filename")) fail(p.where("filename"), "the image of an area light is not exported");
-  if (p.boolean("twosided")) fail(p.where("twosided"), "an area light of both sides has no equivalent in Mitsuba");
+  const auto lacks = [&](std::string_view name, const std::string& what, std::string_view instead) {
+    context_.lacks("lights", p.where(name), what, instead);
+  };
+  if (p.given("filename"))
+    lacks("filename", "the image of an area light is not exported", "its surface emits as a white image would");
+  if (p.boolean("twosided"))
+    lacks("twosided", "an area light of both sides has no equivalent in Mitsuba", "its front emits");
   if (p.given("power") && p.real("power") > 0)
-    fail(p.where("power"), "the \"power\" of an area light is not exported: \"L\" and \"scale\" are");
+    lacks("power", "the \"power\" of an area light is not exported: \"L\" and \"scale\" are",
+          "it is ignored: the light's brightness differs");
   const SpectrumPtr spectrum = p.spectrum("L");
   const auto values = context_.spectra.values([&](const auto& lambda) { return spectrum->sample(lambda); });
   const Element emitter(xml, "emitter", {{"type", "area"}});

@@ -25,25 +25,35 @@ Window window_of(const Params& p, const FilmSettings& film) {
   return aspect > 1 ? Window{-aspect, aspect, -1, 1} : Window{-1, 1, -1 / aspect, 1 / aspect};
 }
 
-/// Length of the camera's x axis in the world, which its lens and its parallel rays are scaled by. Throws InputError if
-/// the transform is not a rotation with a scaling.
-double scale_of(const AffineMap& world_from_camera, const Location& where) {
-  const auto square = world_from_camera.area_scale();
-  if (!square) fail(where, "a camera transform that stretches has no equivalent in Mitsuba");
-  return std::sqrt(double(*square));
+/// Length of the camera's x axis in the world, which its lens and its parallel rays are scaled by. A transform that is
+/// not a rotation with a scaling is reported.
+double scale_of(Context& context, const AffineMap& world_from_camera, const Location& where) {
+  if (const auto square = world_from_camera.area_scale()) return std::sqrt(double(*square));
+  context.lacks("cameras", where, "a camera transform that stretches has no equivalent in Mitsuba",
+                "the image is stretched differently");
+  return double(length(world_from_camera.vector({1, 0, 0})));
+}
+
+/// Returns why Mitsuba has no such pixel filter; empty if it has.
+std::string filter_obstacle(const ParsedPlugin& filter, const Params& p) {
+  const double x = p.real("xradius"), y = p.real("yradius");
+  const auto none = [&](std::string_view has) {
+    return fmt::format("filter \"{}\" with radii {:g} and {:g} has no equivalent in Mitsuba: {}", filter.name, x, y, has);
+  };
+  const std::string& name = filter.name;
+  if (x != y) return none("one radius has");
+  if (name == "box") return x == 0.5 ? "" : none("0.5 has");
+  if (name == "mitchell") return x == 2 ? "" : none("2 has");
+  if (name == "sinc") return x == p.real("tau") && x == std::floor(x) ? "" : none("a whole radius equal to \"tau\" has");
+  if (name == "triangle" || name == "gaussian") return "";
+  return fmt::format("filter \"{}\" has no equivalent in Mitsuba", name);
 }
 
 /// Film, filter and sampler, as parts of the open sensor.
 void write_film(Context& context, Xml& xml, const FilmSettings& film, int samples) {
   const ParsedPlugin& filter = context.description.filter;
   const Params p(context.registry.filters.get(filter.name, filter.where), filter, context.resolver);
-  const double x = p.real("xradius"), y = p.real("yradius");
-  const auto need = [&](bool is_equal, std::string_view what) {
-    if (!is_equal)
-      fail(filter.where, "filter \"{}\" with radii {:g} and {:g} has no equivalent in Mitsuba: {}", filter.name, x, y,
-           what);
-  };
-  need(x == y, "one radius has");
+  const double x = p.real("xradius");
   {
     const std::string& name = context.description.sampler.name;
     const Element sampler(xml, "sampler", {{"type", name == "independent" ? name : "multijitter"}});
@@ -62,8 +72,10 @@ void write_film(Context& context, Xml& xml, const FilmSettings& film, int sample
   xml.text("component_format", "float32");
   // Samples beyond the border contribute to its pixels, as in frond.
   if (filter.name != "box") xml.flag("sample_border", true);
-  if (filter.name == "box") {
-    need(x == 0.5, "0.5 has");
+  if (const std::string why = filter_obstacle(filter, p); !why.empty()) {
+    context.lacks("films", filter.where, why, "a box filter of one pixel stands for it");
+    xml.element("rfilter", {{"type", "box"}});
+  } else if (filter.name == "box") {
     xml.element("rfilter", {{"type", "box"}});
   } else if (filter.name == "triangle") {
     const Element tent(xml, "rfilter", {{"type", "tent"}});
@@ -77,16 +89,12 @@ void write_film(Context& context, Xml& xml, const FilmSettings& film, int sample
     const Element gaussian(xml, "rfilter", {{"type", "gaussian"}});
     xml.number("stddev", sigma);
   } else if (filter.name == "mitchell") {
-    need(x == 2, "2 has");
     const Element mitchell(xml, "rfilter", {{"type", "mitchell"}});
     xml.number("A", p.real("B"));
     xml.number("B", p.real("C"));
-  } else if (filter.name == "sinc") {
-    need(x == p.real("tau") && x == std::floor(x), "a whole radius equal to \"tau\" has");
+  } else {
     const Element lanczos(xml, "rfilter", {{"type", "lanczos"}});
     xml.integer("lobes", int(x));
-  } else {
-    fail(filter.where, "filter \"{}\" has no equivalent in Mitsuba", filter.name);
   }
   if (std::isfinite(film.max_component))
     context.warn(context.description.film.where,
@@ -101,27 +109,37 @@ Transform::RowsDouble mirrored_x(Transform::RowsDouble rows, double x, double y)
 
 /// Cameras are written with their distance in Mitsuba's units; the field of view does not depend on them.
 void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samples) {
-  const ParsedPlugin& camera = context.description.camera;
+  ParsedPlugin camera = context.description.camera;
+  if (camera.name != "perspective" && camera.name != "orthographic") {
+    context.lacks("cameras", camera.where,
+                  fmt::format("camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name),
+                  "a perspective camera of 90 degrees at its place stands for it");
+    camera.name = "perspective", camera.params.clear();
+  }
   const bool is_perspective = camera.name == "perspective";
-  if (!is_perspective && camera.name != "orthographic")
-    fail(camera.where, "camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name);
   if (context.description.camera_from_world.moves())
-    fail(camera.where, "a camera that moves has no equivalent in Mitsuba");
+    context.lacks("cameras", camera.where, "a camera that moves has no equivalent in Mitsuba",
+                  "it stands where it is when the shutter opens");
   const Params p(context.registry.cameras.get(camera.name, camera.where), camera, context.resolver);
   const Window window = window_of(p, film);
   const double aspect = double(film.width) / film.height;
   const AffineMap map{context.description.camera_from_world.start.inverse().rows()};
-  const double scale = scale_of(map, camera.where), units = context.units;
-  const double lens = p.real("lensradius");
+  const double scale = scale_of(context, map, camera.where), units = context.units;
+  double lens = p.real("lensradius");
   Transform::RowsDouble rows = rows_of(map);
   if (is_perspective) {
     if (std::abs(std::abs(window.half_width() / window.half_height()) / aspect - 1) > 1e-6)
-      fail(camera.where, "pixels that are not square have no equivalent in Mitsuba");
+      context.lacks("cameras", camera.where, "pixels that are not square have no equivalent in Mitsuba",
+                    "they are square: the image shows more or less of the scene along y");
     for (auto& row : rows)
       for (size_t j = 0; j < 3; ++j) row[j] /= scale;  // a perspective does not depend on the scale
     rows = mirrored_x(rows, std::copysign(1.0, window.half_width()), std::copysign(1.0, window.half_height()));
   } else {
-    if (lens > 0) fail(p.where("lensradius"), "an orthographic camera with a lens has no equivalent in Mitsuba");
+    if (lens > 0) {
+      context.lacks("cameras", p.where("lensradius"), "an orthographic camera with a lens has no equivalent in Mitsuba",
+                    "everything is in focus");
+      lens = 0;
+    }
     // Mitsuba's film spans -1 to 1 along x.
     for (auto& row : rows) row[3] += row[0] * (window.x0 + window.x1) / 2 + row[1] * (window.y0 + window.y1) / 2;
     rows = mirrored_x(rows, window.half_width(), window.half_height() * aspect);
@@ -170,8 +188,11 @@ bool has_alpha(const SceneDescription& description) {
 void write_view(Context& context, Xml& xml, const FilmSettings& film, int samples) {
   const ParsedPlugin& integrator = context.description.integrator;
   const Params p(context.registry.integrators.get(integrator.name, integrator.where), integrator, context.resolver);
-  if (integrator.name != "path") fail(integrator.where, "integrator \"{}\" is not exported: path is", integrator.name);
-  if (p.string("termination") != "roulette")
+  const bool is_path = integrator.name == "path";
+  if (!is_path)
+    context.lacks("integrators", integrator.where,
+                  fmt::format("integrator \"{}\" is not exported: path is", integrator.name), "path stands for it");
+  if (is_path && p.string("termination") != "roulette")
     context.warn(p.where("termination"), "paths end by Russian roulette in Mitsuba, without bias");
   {
     // Shadow rays of Mitsuba's path tracer are blocked by masks; those of its volumetric path tracer are not.

@@ -20,7 +20,8 @@ class Unsupported {
   /// Returns the names of all kinds.
   static const std::vector<std::string_view>& kinds();
 
-  bool lets_pass(std::string_view kind) const { return passing_.contains(kind); }
+  /// Kinds of an export that are not in kinds() pass with "all" only.
+  bool lets_pass(std::string_view kind) const { return passes_all_ || passing_.contains(kind); }
   /// Warns if the kind is listed; otherwise throws InputError, which names the option --ignore-unsupported. `feature`
   /// and `instead` describe the feature and its replacement: "Camera "realistic"" and "is replaced by "perspective"".
   void handle(std::string_view kind, const Location& where, std::string_view feature, std::string_view instead,
@@ -28,6 +29,7 @@ class Unsupported {
 
  private:
   std::set<std::string, std::less<>> passing_;
+  bool passes_all_ = false;
 };
 
 }  // namespace frond
