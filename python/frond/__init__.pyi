@@ -297,7 +297,7 @@ def export(material: str | os.PathLike | Sequence[str | os.PathLike] | Scene | S
     rays: Number of rays for each value of R and T that is measured by rays.
     seed: Seed of all random numbers.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement."""
+    ignore_unsupported: For mitsuba: leave out what Mitsuba or frond lacks, or export the nearest, with a warning that states what is lost: all of it, or a list of materials, cameras, textures, films, displacement."""
 
 def check(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequence[str | os.PathLike | Scene], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
     """Read scenes and all files that they name, and report all errors.
@@ -308,14 +308,14 @@ def check(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Seque
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors."""
 
-def import_(model: str | os.PathLike, output: str | os.PathLike, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
-    """Write a plant model of another program, OBJ or glTF, as a scene.
+def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
+    """Write a plant model of another program, OBJ or glTF, as a scene, or list what it contains.
 
     The model is read in a process of its own; files that it names are read in its folder and below only. Names of materials, their colours, opacity and normal maps, and instances are kept.
 
     model: Model to read: .obj, .gltf or .glb.
-    output: Scene file to write, .pbrt, with a camera and lights. Materials and shapes go to NAME-plant.pbrt beside it, meshes and images into the folder NAME-files.
-    leaf: NAME=PLUGIN[,parameter=value...]: leaf material for the model's materials of this name, with * and ? for any characters, as in "leaf*=leaf,specimen=maize". Repeatable.
+    output: Scene file to write, .pbrt, with a camera and lights. Materials and shapes go to NAME-plant.pbrt beside it, meshes and images into the folder NAME-files. Without it the command lists what the model contains.
+    leaf: NAME=PLUGIN[,parameter=value...]: leaf material for the model's materials of this name, with * and ? for any characters, as in "leaf*=leaf,specimen=maize". A number that may be a texture can follow the brightness of the image of the model's colour: chlorophylla=@4:1 is 4 where it is black, 1 where it is white. Repeatable.
     unit: Length unit of the model, which is converted to metres; by default m, glTF's unit. One of m, cm, mm, inch. Excludes scale.
     scale: Metres for one unit of the model. Range: from 1e-12 to 1e+12.
     up: Axis that is up in the model; z is up in the scene. By default y, glTF's axis. One of y, z.

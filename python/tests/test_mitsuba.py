@@ -244,6 +244,24 @@ def test_an_export_refuses_what_mitsuba_lacks(old, new, message, tmp_path):
     assert not (tmp_path / "out" / "scene.xml").exists()
 
 
+def test_an_export_reports_all_obstacles_and_can_approximate_them(tmp_path):
+    """The sun and the sky of `sky`, and the mean of a checkerboard: mean radiances within 1 %, far above the noise."""
+    mi, dr = variant("llvm_ad_rgb")
+    text = re.sub('LightSource "distant".*\n', 'LightSource "sky" "float elevation" 50 "float illuminance" 3\n', SCENE)
+    text = text.replace('MakeNamedMaterial "paper"', 'Texture "t" "spectrum" "checkerboard"\nMakeNamedMaterial "paper"')
+    text = text.replace('"diffusetransmission" "rgb reflectance" [ 0.5 0.3 0.2 ] "float scale" 1.2', '"diffuse" "texture reflectance" "t"')
+    (tmp_path / "scene.pbrt").write_text(text)
+    with pytest.raises(frond.InputError, match="(?s)checkerboard.*light .sky. has no equivalent"):
+        frond.export(str(tmp_path / "scene.pbrt"), format="mitsuba", output=str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+    frond.export(str(tmp_path / "scene.pbrt"), format="mitsuba", output=str(tmp_path / "out"), ignore_unsupported="all")
+    theirs = numpy.array(mi.render(mi.load_file(str(tmp_path / "out" / "scene.xml")), spp=128))[:, :, :3]
+    plain = text.replace('"texture reflectance" "t"', '"float reflectance" 0.5')
+    (tmp_path / "plain.pbrt").write_text(plain.replace('"float reflectance" 0.5', '"rgb reflectance" [ 0.5 0.5 0.5 ]'))
+    ours = frond.load(tmp_path / "plain.pbrt", wavelengths="smpte").render(128).rgb
+    assert (abs(theirs.mean((0, 1)) / ours.mean((0, 1)) - 1) < 0.01).all()
+
+
 @pytest.mark.parametrize("scene, output, message", [
     (None, "out.exr", "scene.xml.*does not exist"),
     ('<scene version="3.0.0"><shape type="none"/></scene>', "out.exr", "line 1, col 25"),

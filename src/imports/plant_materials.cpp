@@ -198,7 +198,7 @@ class MaterialWriter {
   std::string text_, textures_;
   std::set<std::string> names_;
   std::map<std::tuple<int32_t, bool, float, float>, std::string> opacities_;  ///< image, kind, factor, cutoff; paths
-  std::map<int32_t, std::string> brightness_;  ///< by image: paths
+  std::map<int32_t, std::string> brightness_;                                 ///< by image: paths
   std::set<const MaterialRule*> used_rules_;
 };
 

@@ -41,9 +41,9 @@ struct ImportSummary {
   std::array<double, 3> least{};  ///< lower corner of its bounding box
 };
 
-/// Reads a model and, if a scene is given, writes it: SCENE.pbrt with camera and lights, SCENE-plant.pbrt with materials and
-/// shapes, and the folder SCENE-files with meshes and images. The files appear together after `accept`, which may
-/// throw. Throws InputError.
+/// Reads a model and, if a scene is given, writes it: SCENE.pbrt with camera and lights, SCENE-plant.pbrt with
+/// materials and shapes, and the folder SCENE-files with meshes and images. The files appear together after `accept`,
+/// which may throw. Throws InputError.
 ImportSummary import_scene(const ImportOptions& options, const Log& log,
                            const std::function<void(const ImportSummary&)>& accept);
 

@@ -67,10 +67,11 @@ const JobParam kParams[] = {
              {.range = {2, kCounts.max}, .decides = true}),
     kSeedParam,
     kSwapParam,
-    JobParam("ignore-unsupported", text,
-             "For mitsuba: leave out what Mitsuba or frond lacks, or export the nearest, with a warning that states what "
-             "is lost: all of it, or a list of materials, cameras, textures, films, displacement.",
-             {.type = "KINDS", .decides = true, .implied = "all"}),
+    JobParam(
+        "ignore-unsupported", text,
+        "For mitsuba: leave out what Mitsuba or frond lacks, or export the nearest, with a warning that states what "
+        "is lost: all of it, or a list of materials, cameras, textures, films, displacement.",
+        {.type = "KINDS", .decides = true, .implied = "all"}),
 };
 
 /// Throws InputErrors for all given options that the format does not use; the messages name the formats that do.
@@ -88,8 +89,8 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
     std::vector<std::string_view> others;
     for (const ExportFormat* f : export_formats())
       if (uses(*f, option)) others.push_back(f->name);
-    problems.add(InputError({}, fmt::format("{} is for {} {}", args.spelled(name), args.spelled("format"),
-                                            fmt::join(others, ", "))));
+    problems.add(InputError(
+        {}, fmt::format("{} is for {} {}", args.spelled(name), args.spelled("format"), fmt::join(others, ", "))));
   }
   if (args.text("output") == "-" && !format.is_text)
     problems.add(InputError({}, fmt::format("{} {} is no text: it cannot be written to standard output",
@@ -128,8 +129,7 @@ Result export_scene(const JobRun& run) {
   apply_swaps(description, swaps_of(args), session.registry(), run.log());
   export_to_mitsuba(std::move(description), session.registry(),
                     {args.text("output"), args.numbers("wavelengths"), files.front(), unsupported_of(args)},
-                    session.pool(), run.log(),
-                    run.context.options().cache);
+                    session.pool(), run.log(), run.context.options().cache);
   return {};
 }
 

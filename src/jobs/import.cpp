@@ -60,11 +60,13 @@ MappedParam mapped_param(const std::string& name, const std::string& value, cons
     std::vector<std::string_view> names;
     for (const Param& p : info.params)
       if (p.kind == ParamKind::float_texture) names.push_back(p.name);
-    fail({}, "{}: \"{}\" of \"{}\" takes no texture; those that do are {}", rule, name, info.name, fmt::join(names, ", "));
+    fail({}, "{}: \"{}\" of \"{}\" takes no texture; those that do are {}", rule, name, info.name,
+         fmt::join(names, ", "));
   }
   for (const double v : {black->front(), white->front()})
     if (!param->range.contains(v))
-      fail({}, "{}: \"{}\" lies within {:g} and {:g}, {:g} was given", rule, name, param->range.min, param->range.max, v);
+      fail({}, "{}: \"{}\" lies within {:g} and {:g}, {:g} was given", rule, name, param->range.min, param->range.max,
+           v);
   return {name, black->front(), white->front()};
 }
 
@@ -122,22 +124,24 @@ void report_unit(const JobRun& run, const ImportSummary& summary) {
   for (size_t i = 1; i < std::size(kUnits); ++i)
     if (height > kTallest) offers.push_back(fmt::format("{} makes it {:.3g} m", kUnits[i], height * kMetres[i]));
   if (offers.empty()) offers.push_back(fmt::format("{} takes metres for one unit", run.args.spelled("scale")));
-  run.log().warn({}, fmt::format("the model is {:.4g} m {}, which no plant is: {} {}", height > kTallest ? height : largest,
-                                 height > kTallest ? "high" : "large",
+  run.log().warn({}, fmt::format("the model is {:.4g} m {}, which no plant is: {} {}",
+                                 height > kTallest ? height : largest, height > kTallest ? "high" : "large",
                                  height > kTallest ? run.args.spelled("unit") : "", fmt::join(offers, ", ")));
 }
 
 /// Reports what a material by --leaf replaces, and how its colour image can vary the leaf.
 void report_replaced(const JobRun& run, const ImportSummary& summary) {
   if (summary.replaced.empty()) return;
-  std::string text = fmt::format("without effect under {}, since the tissue of a leaf decides its look: {}; alpha and "
-                                 "normal maps are kept",
-                                 run.args.spelled("leaf"), fmt::join(summary.replaced, ", "));
+  std::string text = fmt::format(
+      "without effect under {}, since the tissue of a leaf decides its look: {}; alpha and "
+      "normal maps are kept",
+      run.args.spelled("leaf"), fmt::join(summary.replaced, ", "));
   const auto is_color = [](const std::string& what) { return what.starts_with("colour image"); };
   if (std::ranges::any_of(summary.replaced, is_color))
-    text += fmt::format("; chlorophylla=@4:1 in {} lets the chlorophyll follow the brightness of that image, from 4 where "
-                        "it is black to 1 where it is white",
-                        run.args.spelled("leaf"));
+    text += fmt::format(
+        "; chlorophylla=@4:1 in {} lets the chlorophyll follow the brightness of that image, from 4 where "
+        "it is black to 1 where it is white",
+        run.args.spelled("leaf"));
   run.log().info(text);
 }
 
@@ -217,8 +221,8 @@ Result import_model(const JobRun& run) {
   if (is_list) {
     const auto& [least, size] = std::pair(summary.least, summary.size);
     for (size_t k = 0; k < 3; ++k)
-      result.text += fmt::format("{}: {:.4g} to {:.4g} m\n", std::string_view("xyz").substr(k, 1), least[k],
-                                 least[k] + size[k]);
+      result.text +=
+          fmt::format("{}: {:.4g} to {:.4g} m\n", std::string_view("xyz").substr(k, 1), least[k], least[k] + size[k]);
     result.text += fmt::format("nothing is written: {} SCENE.pbrt writes a scene\n", run.args.spelled("output"));
   } else {
     result.text += fmt::format("{}: {:.4g} x {:.4g} x {:.4g} m\n", options.scene.string(), summary.size[0],

@@ -179,17 +179,19 @@ TEST_F(ImportCommand, WhatALeafMaterialReplacesIsNamed) {
 TEST_F(ImportCommand, ALeafFollowsTheBrightnessOfItsImage) {
   folder_.write("leaf.png", png_with_alpha());
   folder_.write("plant.mtl", "newmtl leaf\nmap_Kd leaf.png\n");
-  folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad +
-                                 "usemtl leaf\nf 1/1 2/2 3/3 4/4\nusemtl bare\nf 1 2 3\n");
+  folder_.write("plant.obj",
+                std::string("mtllib plant.mtl\n") + kQuad + "usemtl leaf\nf 1/1 2/2 3/3 4/4\nusemtl bare\nf 1 2 3\n");
   const Outcome o = imported("plant.obj", {"--leaf", "leaf=leaf_lambert,specimen=maize,chlorophylla=@4:1"});
   EXPECT_THAT(o.err, Not(HasSubstr("without effect")));
-  EXPECT_THAT(plant(), AllOf(HasSubstr("\"mix\" \"float tex1\" 4 \"float tex2\" 1 \"texture amount\" \"leaf-brightness\""),
-                             HasSubstr("\"texture chlorophylla\" \"leaf-chlorophylla\"")));
+  EXPECT_THAT(plant(),
+              AllOf(HasSubstr("\"mix\" \"float tex1\" 4 \"float tex2\" 1 \"texture amount\" \"leaf-brightness\""),
+                    HasSubstr("\"texture chlorophylla\" \"leaf-chlorophylla\"")));
   EXPECT_NEAR(read_image(path("scene-files/leaf-brightness.png"), {}).image.at(0, 0, 0), 0.4479f / 3, 0.003f);
   const auto refused = [this](const std::string& leaf) { return refusal("plant.obj", {"--leaf", leaf}); };
   EXPECT_THAT(refused("bare=leaf_lambert,chlorophylla=@4:1"), HasSubstr("\"bare\" has no image of its colour"));
   EXPECT_THAT(refused("leaf=leaf_lambert,chlorophylla=@4"), HasSubstr("chlorophylla=@BLACK:WHITE"));
-  EXPECT_THAT(refused("leaf=leaf_lambert,specimen=@4:1"), HasSubstr("\"specimen\" of \"leaf_lambert\" takes no texture"));
+  EXPECT_THAT(refused("leaf=leaf_lambert,specimen=@4:1"),
+              HasSubstr("\"specimen\" of \"leaf_lambert\" takes no texture"));
   EXPECT_THAT(refused("leaf=leaf_lambert,chlorophylla=@-4:1"), HasSubstr("-4 was given"));
 }
 
@@ -208,10 +210,12 @@ TEST_F(ImportCommand, WithoutASceneTheContentIsListed) {
   EXPECT_THAT(o.out, AllOf(HasSubstr("leaf: diffuse, 2 triangles, colour from leaf.png, alpha from leaf.png\n"),
                            HasSubstr("stem: diffuse, 1 triangle\n"), HasSubstr("z: 0 to 250 m\n"),
                            HasSubstr("nothing is written")));
-  EXPECT_THAT(o.err, HasSubstr("the model is 250 m high, which no plant is: --unit cm makes it 2.5 m, mm makes it 0.25 m"));
-  EXPECT_THAT(frond_command({"import", path("plant.obj"), "--up", "z", "--unit", "cm"}).err, Not(HasSubstr("no plant")));
-  folder_.write("two.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":0,"translation":[2,0,0]})", "{\"name\":\"leaf\"}",
-                                 embedded()));
+  EXPECT_THAT(o.err,
+              HasSubstr("the model is 250 m high, which no plant is: --unit cm makes it 2.5 m, mm makes it 0.25 m"));
+  EXPECT_THAT(frond_command({"import", path("plant.obj"), "--up", "z", "--unit", "cm"}).err,
+              Not(HasSubstr("no plant")));
+  folder_.write("two.gltf", gltf(R"({"children":[1,2]},{"mesh":0},{"mesh":0,"translation":[2,0,0]})",
+                                 "{\"name\":\"leaf\"}", embedded()));
   EXPECT_THAT(frond_command({"import", path("two.gltf")}).out, HasSubstr("object blade: 2 triangles, 2 instances\n"));
   EXPECT_EQ(frond_command({"import", path("missing.obj")}).code, 1);
 }

@@ -42,8 +42,8 @@ class MitsubaScene : public ::testing::Test {
     ThreadPool pool(1);
     export_to_mitsuba(parse_scene_text(scene, FROND_SOURCE_DIR "/tests/pbrt_reference/s.pbrt", silent_log()),
                       make_registry(builtin_materials(), builtin_integrators()),
-                      {folder_.name_of("out"), nm, "s.pbrt", ignored.empty() ? Unsupported() : Unsupported(ignored)}, pool,
-                      log, {});
+                      {folder_.name_of("out"), nm, "s.pbrt", ignored.empty() ? Unsupported() : Unsupported(ignored)},
+                      pool, log, {});
     return read_file_bytes(folder_.name_of("out/scene.xml"), {});
   }
   /// Writes a float image of 2 x 2 texels in three channels, and returns the quoted path.
@@ -209,22 +209,24 @@ TEST_F(MitsubaScene, AllObstaclesAreReportedAtOnce) {
       image("white.exr", std::vector<float>(12, 1)) +
       "\nTexture \"t\" \"spectrum\" \"checkerboard\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" + kCard +
       "Material \"coateddiffuse\"\nShape \"sphere\"\n"
-      "Material \"conductor\" \"float uroughness\" 0.1 \"float vroughness\" 0.2\nShape \"sphere\" \"float phimax\" 90\n" +
+      "Material \"conductor\" \"float uroughness\" 0.1 \"float vroughness\" 0.2\nShape \"sphere\" \"float phimax\" "
+      "90\n" +
       kCard;
   const std::string message = refusal(scene);
-  EXPECT_THAT(message, AllOf(HasSubstr("s.pbrt:1:8: camera \"spherical\""), HasSubstr("s.pbrt:3:12: integrator \"volpath\""),
-                             HasSubstr("s.pbrt:5:13: light \"sky\""), HasSubstr("s.pbrt:6:13: light \"goniometric\""),
-                             HasSubstr("s.pbrt:7:24: texture \"checkerboard\""),
-                             HasSubstr("s.pbrt:10:10: material \"coateddiffuse\"")));
-  EXPECT_THAT(message, AllOf(HasSubstr("s.pbrt:12:10: a roughness that differs"),
-                             HasSubstr("s.pbrt:13:16: part of a sphere")));
+  EXPECT_THAT(
+      message,
+      AllOf(HasSubstr("s.pbrt:1:8: camera \"spherical\""), HasSubstr("s.pbrt:3:12: integrator \"volpath\""),
+            HasSubstr("s.pbrt:5:13: light \"sky\""), HasSubstr("s.pbrt:6:13: light \"goniometric\""),
+            HasSubstr("s.pbrt:7:24: texture \"checkerboard\""), HasSubstr("s.pbrt:10:10: material \"coateddiffuse\"")));
+  EXPECT_THAT(message,
+              AllOf(HasSubstr("s.pbrt:12:10: a roughness that differs"), HasSubstr("s.pbrt:13:31: part of a sphere")));
   EXPECT_EQ(std::ranges::count(message, '\n'), 7) << message;
   EXPECT_FALSE(std::filesystem::exists(folder_.name_of("out")));
   // With the option each is a warning.
   const Warnings log;
   const std::string xml = exported(scene, {}, "all", log);
   for (const char* what : {"1:8: camera", "3:12: integrator", "5:13: light", "6:13: light", "7:24: texture",
-                           "10:10: material", "12:10: a roughness", "13:16: part"})
+                           "10:10: material", "12:10: a roughness", "13:31: part"})
     EXPECT_THAT(log.all, ::testing::Contains(HasSubstr(what)));
   EXPECT_THAT(log.all, Each(Not(HasSubstr("--ignore"))));
   EXPECT_THAT(xml, AllOf(HasSubstr("type=\"directional\""), HasSubstr("type=\"envmap\""),
@@ -238,8 +240,8 @@ TEST_F(MitsubaScene, AllObstaclesAreReportedAtOnce) {
 /// The map is outside of "twosided", which would mirror it on the back; its texels are those of the file.
 TEST_F(MitsubaScene, NormalMapsAreExported) {
   const std::vector<float> normals{0.5f, 0.5f, 1, 0.6f, 0.5f, 0.9f, 0.5f, 0.4f, 0.9f, 0.4f, 0.6f, 0.9f};
-  const std::string xml = exported(
-      world("Material \"diffuse\" \"string normalmap\" " + image("normals.exr", normals) + "\n" + kCard));
+  const std::string xml =
+      exported(world("Material \"diffuse\" \"string normalmap\" " + image("normals.exr", normals) + "\n" + kCard));
   EXPECT_THAT(xml, ContainsRegex("type=\"normalmap\" id=\"material-1\">[^$]*type=\"twosided\">[^$]*type=\"diffuse\""));
   EXPECT_THAT(xml, HasSubstr("<matrix value=\"1 0 0 0 0 -1 0 1 0 0 1 0 0 0 0 1\"/>"));
   EXPECT_EQ(texture(xml, "normalmap").pixels, normals);
@@ -251,9 +253,9 @@ TEST_F(MitsubaScene, NormalMapsAreExported) {
 /// Heights are in the scene's units, of which one is 100 here.
 TEST_F(MitsubaScene, BumpMapsAreExported) {
   const std::string heights = image("heights.exr", {0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1});
-  const std::string xml = exported(world("Texture \"h\" \"float\" \"imagemap\" \"string filename\" " + heights +
-                                         " \"float scale\" 0.25\nMaterial \"diffuse\" \"texture displacement\" \"h\"\n" +
-                                         kCard));
+  const std::string xml =
+      exported(world("Texture \"h\" \"float\" \"imagemap\" \"string filename\" " + heights +
+                     " \"float scale\" 0.25\nMaterial \"diffuse\" \"texture displacement\" \"h\"\n" + kCard));
   EXPECT_THAT(xml, AllOf(HasSubstr("type=\"bumpmap\" id=\"material-1\""), HasSubstr("name=\"scale\" value=\"100\"")));
   EXPECT_EQ(texture(xml, "map").at(1, 0, 0), 0.25f);
   EXPECT_THAT(exported(world("Texture \"h\" \"float\" \"constant\" \"float value\" 2\nMaterial \"diffuse\" \"texture "
@@ -288,7 +290,8 @@ TEST_F(MitsubaScene, ALambertianLeafFollowsItsTextures) {
                                          "chlorophylla\" \"t\"\n" +
                                          kCard));
   const Image reflectance = texture(xml, "reflectance"), back = texture(xml, "back_transmittance");
-  const std::string constant = exported(world("Material \"leaf_lambert\" \"float chlorophylla\" 4\n" + std::string(kCard)));
+  const std::string constant =
+      exported(world("Material \"leaf_lambert\" \"float chlorophylla\" 4\n" + std::string(kCard)));
   const size_t at = constant.find("<rgb name=\"reflectance\" value=\"");
   double red = 0, green = 0;
   ASSERT_EQ(std::sscanf(constant.c_str() + at, "<rgb name=\"reflectance\" value=\"%lf, %lf", &red, &green), 2);

@@ -12,9 +12,9 @@
 
 namespace frond::mitsuba {
 
-/// What the writers of an export's parts share. They report what Mitsuba has no equivalent of by `lacks`, and go on with
-/// what stands for it, so that one run finds all of it; InputErrors of single materials, shapes and lights are collected
-/// in `problems`.
+/// What the writers of an export's parts share. They report what Mitsuba has no equivalent of by `lacks`, and go on
+/// with what stands for it, so that one run finds all of it; InputErrors of single materials, shapes and lights are
+/// collected in `problems`.
 struct Context {
   const SceneDescription& description;
   const Registry& registry;

@@ -18,7 +18,7 @@ constexpr int kRowsPerRow = 16, kMostRows = 2048;
 /// Sun of a sky: Mitsuba's parallel light has its irradiance, the image is without its disc.
 struct Sun {
   Vec3 toward;
-  double radius;      ///< of a circle around the disc, rad
+  double radius;     ///< of a circle around the disc, rad
   double projected;  ///< solid angle of the disc, projected on a plane that faces it
 };
 
@@ -31,11 +31,13 @@ Sun sun_of(const Context& context, const Surroundings& sky) {
 
 /// Returns the direction; one on the sun's disc becomes the nearest beside it.
 Vec3 beside(const Sun& sun, const Vec3& d) {
-  const float least = float(2 * std::sin(sun.radius / 2));
-  if (length(d - sun.toward) >= least) return d;
-  Vec3 away = d - sun.toward * dot(d, sun.toward);
-  if (!(length(away) > 0)) away = Frame::around(sun.toward).x;
-  return normalize(sun.toward * float(std::cos(sun.radius)) + normalize(away) * float(std::sin(sun.radius)));
+  if (length(d - sun.toward) >= float(2 * std::sin(sun.radius / 2))) return d;
+  const Frame frame = Frame::around(sun.toward);
+  const Vec3 local = frame.to_local(d);
+  const float off_axis = std::hypot(local.x, local.y), sine = float(std::sin(sun.radius));
+  const bool is_center = off_axis < 1e-5f;  // rounding has no direction
+  return frame.to_world({is_center ? sine : local.x * (sine / off_axis), is_center ? 0 : local.y * (sine / off_axis),
+                         float(std::cos(sun.radius))});
 }
 
 /// Radiance of a light without the disc of its sun.
@@ -119,7 +121,8 @@ void write_image(Context& context, Xml& xml, const std::vector<Surroundings>& li
       });
       if (!is_spectral) values = spectra.emission(std::move(values), context.exposure);
       for (size_t c = 0; c < 3; ++c)
-        image.at(x, y, c) = float(is_spectral ? context.exposure * (*color)(c, values) : values[values.size() > 1 ? c : 0]);
+        image.at(x, y, c) =
+            float(is_spectral ? context.exposure * (*color)(c, values) : values[values.size() > 1 ? c : 0]);
     }
   });
   const Element emitter(xml, "emitter", {{"type", "envmap"}});

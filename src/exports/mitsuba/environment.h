@@ -14,8 +14,8 @@ struct Surroundings {
   int texels = 0;                ///< along a side of its image; 0: its radiance is the same everywhere
 };
 
-/// Writes the surrounding lights: a constant emitter if all are uniform, otherwise one environment image with their sum,
-/// because Mitsuba takes one environment. The sun of a "sky" is a directional emitter.
+/// Writes the surrounding lights: a constant emitter if all are uniform, otherwise one environment image with their
+/// sum, because Mitsuba takes one environment. The sun of a "sky" is a directional emitter.
 void write_surroundings(Context& context, Xml& xml, const std::vector<Surroundings>& lights);
 
 }  // namespace frond::mitsuba

@@ -37,8 +37,8 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
   bool is_refused = false;
   for (const ParsedParam& given : plugin.params) {
     if (!contains(kRefused, given.name)) continue;
-    context.lacks("materials", given.where,
-                  fmt::format("\"{}\" has no equivalent in Mitsuba's frond_leaf", given.name), kStandIn);
+    context.lacks("materials", given.where, fmt::format("\"{}\" has no equivalent in Mitsuba's frond_leaf", given.name),
+                  kStandIn);
     is_refused = true;
   }
   if (is_refused) return context.problems.empty() && write_stand_in(context, xml, source);
@@ -73,8 +73,8 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
   return has_image;
 }
 
-/// The material itself computes the shares, which depend on its angle of incidence. Where images vary it, its shares are
-/// images with the texels of the largest one.
+/// The material itself computes the shares, which depend on its angle of incidence. Where images vary it, its shares
+/// are images with the texels of the largest one.
 bool write_lambertian_leaf(Context& context, Xml& xml, const Materials::Source& source) {
   const auto& [plugin, p, id, index] = source;
   std::vector<std::string_view> varied;

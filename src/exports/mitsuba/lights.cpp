@@ -52,9 +52,10 @@ void add_surroundings(Context& context, const LightDescription& description, std
   ParsedPlugin plugin = description.plugin;
   const LightInfo& info = context.registry.lights.get(plugin.name, plugin.where);
   if (plugin.name == "sky" &&
-      !context.lacks("lights", plugin.where, "light \"sky\" has no equivalent in Mitsuba",
-                     "its sun becomes parallel light, which has no half-shadows and is not seen in mirrors, and its sky "
-                     "an image"))
+      !context.lacks(
+          "lights", plugin.where, "light \"sky\" has no equivalent in Mitsuba",
+          "its sun becomes parallel light, which has no half-shadows and is not seen in mirrors, and its sky "
+          "an image"))
     return;
   if (const ParsedParam* const portal = find_param(plugin.params, "portal")) {
     context.lacks("lights", portal->where, "a light with a portal has no equivalent in Mitsuba",
@@ -62,7 +63,8 @@ void add_surroundings(Context& context, const LightDescription& description, std
     std::erase_if(plugin.params, [](const ParsedParam& p) { return p.name == "portal"; });
   }
   const Params p(info, plugin, context.resolver);
-  Surroundings made{description, made_by(info, plugin.where, [&] { return info.make(p, description.world_from_light); })};
+  Surroundings made{description,
+                    made_by(info, plugin.where, [&] { return info.make(p, description.world_from_light); })};
   if (const auto* const file = find_param(plugin.params, "filename"))
     made.texels = read_image(p.file("filename"), file->where).image.width;
   else if (plugin.name == "sky")

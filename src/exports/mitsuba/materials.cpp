@@ -69,11 +69,12 @@ void Materials::write_plain(Xml& xml, const ParsedPlugin& plugin, const std::str
     has_image = row->write(context_, xml, source);
   } else {
     const std::string& name = context_.description.materials[index].name;
-    if (context_.lacks("materials", plugin.where,
-                       fmt::format("material \"{}\" has no equivalent in Mitsuba (--swap \"{}=diffuse,reflectance=0.5\" "
-                                   "replaces it)",
-                                   plugin.name, name.empty() ? plugin.name : name),
-                       kStandIn))
+    if (context_.lacks(
+            "materials", plugin.where,
+            fmt::format("material \"{}\" has no equivalent in Mitsuba (--swap \"{}=diffuse,reflectance=0.5\" "
+                        "replaces it)",
+                        plugin.name, name.empty() ? plugin.name : name),
+            kStandIn))
       has_image = write_stand_in(context_, xml, source);
   }
   if (has_image) with_image_.insert(index);
@@ -89,14 +90,22 @@ void Materials::write_bent(Xml& xml, const ParsedPlugin& bend, const ParsedPlugi
   if (!is_map && p.given("displacement")) height = float_value(context_, bend, p, "displacement");
   if (!is_map && !height.image) return write_plain(xml, plugin, id, index);
   if (std::ranges::any_of(parts_of(plugin), [this](size_t part) { return is_bent(part); })) {
-    context_.lacks("materials", bend.where, "a normal or bump map of a mixture whose materials have such maps too is "
-                   "not exported", "the mixture's own is left out");
+    context_.lacks("materials", bend.where,
+                   "a normal or bump map of a mixture whose materials have such maps too is "
+                   "not exported",
+                   "the mixture's own is left out");
     return write_plain(xml, plugin, id, index);
   }
   with_image_.insert(index);
+  context_.warn(p.where(is_map ? "normalmap" : "displacement"),
+                "Mitsuba drops light on the other side of the surface than of its mapped normal, which frond keeps: steep "
+                "maps are darker there");
   const Element outer(xml, "bsdf", {{"type", is_map ? "normalmap" : "bumpmap"}, {"id", id}});
   if (is_map) {
     write_normals(context_, xml, "normalmap", p.file("normalmap"), read_rgb(p, "normalmap").image);
+    // As frond, which keeps all energy of the BSDF: no shadows between facets, no turned normals.
+    xml.flag("use_shadowing_function", false);
+    xml.flag("flip_invalid_normals", false);
   } else {
     context_.warn(p.where("displacement"),
                   "bump maps differ: Mitsuba takes the slope at a point, frond over the pixel's footprint");

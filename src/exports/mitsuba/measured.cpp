@@ -59,8 +59,7 @@ bool write_measured(Context& context, Xml& xml, const Materials::Source& source)
   const TensorFile file(std::move(content), path.string(), where);
   const Field &phi = file.floats("phi_i", 1), &spectra = file.floats("spectra", 5);
   if (phi.count > 2)
-    return stand_in(
-        "an anisotropic measurement is not exported: Mitsuba turns its back around the normal differently");
+    return stand_in("an anisotropic measurement is not exported: Mitsuba turns its back around the normal differently");
   const std::vector<float> nm = file.numbers(file.floats("wavelengths", 1));
   check_range({double(nm.front()), double(nm.back())}, context.spectra.strategy(), where, "filename");
 

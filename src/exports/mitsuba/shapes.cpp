@@ -137,9 +137,10 @@ std::optional<std::pair<Location, std::string>> Shapes::obstacle(const ShapeDesc
   if (p.real("phimax") != 360)
     return {{p.where("phimax"), fmt::format("part of a {} has no equivalent in Mitsuba", name)}};
   if (!AffineMap{shape.world_from_object.rows()}.area_scale())
-    return {{where, fmt::format("a {} whose transform stretches it has no equivalent in Mitsuba: rotations and scalings "
-                                "have",
-                                name)}};
+    return {
+        {where, fmt::format("a {} whose transform stretches it has no equivalent in Mitsuba: rotations and scalings "
+                            "have",
+                            name)}};
   if (name == "disk" && p.real("innerradius") != 0)
     return {{p.where("innerradius"), "a ring has no equivalent in Mitsuba"}};
   const double radius = p.real("radius");

@@ -142,8 +142,8 @@ bool write_interface(Context&, Xml& xml, const Materials::Source& source) {
   return false;
 }
 
-/// The mean over texture coordinates and wavelengths of each lane's albedo, by samples of the BSDF that are the same for
-/// every run.
+/// The mean over texture coordinates and wavelengths of each lane's albedo, by samples of the BSDF that are the same
+/// for every run.
 bool write_stand_in(Context& context, Xml& xml, const Materials::Source& source) {
   constexpr int kSamples = 4096;
   constexpr double kTheta = 8 * std::numbers::pi / 180;

@@ -74,9 +74,8 @@ void add_parts(const Context& context, const ParsedPlugin& plugin, const PluginI
   if (!given || !declared || given->type != "texture") return;
   const Value value = declared->kind == ParamKind::float_texture ? Value::real : Value::spectrum;
   const std::string& wanted = std::get<std::vector<std::string>>(given->values).front();
-  const auto found = std::ranges::find_if(context.description.textures, [&](const TextureDescription& t) {
-    return t.value == value && t.name == wanted;
-  });
+  const auto found = std::ranges::find_if(
+      context.description.textures, [&](const TextureDescription& t) { return t.value == value && t.name == wanted; });
   if (found == context.description.textures.end()) return;
   const std::string& type = found->plugin.name;
   if (type == "imagemap") {
@@ -101,8 +100,8 @@ std::optional<std::pair<Location, std::string>> obstacle(Context& context, const
   return {};
 }
 
-/// A texture parameter as an image of Mitsuba: its texels, nullptr if it is constant; `is_mean`: it is reported, and its
-/// mean stands for it.
+/// A texture parameter as an image of Mitsuba: its texels, nullptr if it is constant; `is_mean`: it is reported, and
+/// its mean stands for it.
 struct Texels {
   const TextureDescription* image = nullptr;
   bool is_mean = false;
@@ -154,8 +153,8 @@ Image tabulated(const ImageFrame& frame, std::vector<std::string> channels, cons
 /// Images of colours have three channels, or one value.
 bool has_colors(Context& context, const Location& where) {
   if (context.spectra.variants() != Variants::spectral) return true;
-  context.lacks("textures", where,
-                "images of colours are for mono and rgb variants: give one wavelength or three", kMean);
+  context.lacks("textures", where, "images of colours are for mono and rgb variants: give one wavelength or three",
+                kMean);
   return false;
 }
 

@@ -10,13 +10,13 @@ namespace frond::mitsuba {
 
 /// Value of a material's parameter: a constant or an image.
 struct SpectrumValue {
-  std::vector<double> constant;                ///< by wavelength; empty: an image
-  const TextureDescription* image = nullptr;   ///< whose texels are written; nullptr: a constant
+  std::vector<double> constant;                          ///< by wavelength; empty: an image
+  const TextureDescription* image = nullptr;             ///< whose texels are written; nullptr: a constant
   std::shared_ptr<const SpectrumTexture> map = nullptr;  ///< of the parameter
 };
 struct FloatValue {
   double constant = 0;
-  const TextureDescription* image = nullptr;  ///< whose texels are written; nullptr: a constant
+  const TextureDescription* image = nullptr;          ///< whose texels are written; nullptr: a constant
   std::shared_ptr<const FloatTexture> map = nullptr;  ///< of the parameter
 };
 

@@ -38,13 +38,15 @@ double scale_of(Context& context, const AffineMap& world_from_camera, const Loca
 std::string filter_obstacle(const ParsedPlugin& filter, const Params& p) {
   const double x = p.real("xradius"), y = p.real("yradius");
   const auto none = [&](std::string_view has) {
-    return fmt::format("filter \"{}\" with radii {:g} and {:g} has no equivalent in Mitsuba: {}", filter.name, x, y, has);
+    return fmt::format("filter \"{}\" with radii {:g} and {:g} has no equivalent in Mitsuba: {}", filter.name, x, y,
+                       has);
   };
   const std::string& name = filter.name;
   if (x != y) return none("one radius has");
   if (name == "box") return x == 0.5 ? "" : none("0.5 has");
   if (name == "mitchell") return x == 2 ? "" : none("2 has");
-  if (name == "sinc") return x == p.real("tau") && x == std::floor(x) ? "" : none("a whole radius equal to \"tau\" has");
+  if (name == "sinc")
+    return x == p.real("tau") && x == std::floor(x) ? "" : none("a whole radius equal to \"tau\" has");
   if (name == "triangle" || name == "gaussian") return "";
   return fmt::format("filter \"{}\" has no equivalent in Mitsuba", name);
 }
@@ -111,9 +113,10 @@ Transform::RowsDouble mirrored_x(Transform::RowsDouble rows, double x, double y)
 void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samples) {
   ParsedPlugin camera = context.description.camera;
   if (camera.name != "perspective" && camera.name != "orthographic") {
-    context.lacks("cameras", camera.where,
-                  fmt::format("camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name),
-                  "a perspective camera of 90 degrees at its place stands for it");
+    context.lacks(
+        "cameras", camera.where,
+        fmt::format("camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name),
+        "a perspective camera of 90 degrees at its place stands for it");
     camera.name = "perspective", camera.params.clear();
   }
   const bool is_perspective = camera.name == "perspective";
