@@ -14,7 +14,7 @@ namespace {
 using namespace frond;
 
 // A leaf model takes the parameters of all leaves, so that it can replace any other in a scene.
-constexpr auto kParams = without_reciprocal(kLeafParams);
+const std::vector<Param> kParams = without_reciprocal(leaf_params());
 
 /// Lambertian reflection and transmission with the leaf's reflectance and transmittance at the angle of incidence.
 class AngularBsdf final : public Bsdf {

@@ -35,11 +35,9 @@ from . import _frond
 from ._session import default_session
 
 #: Concentrations, which change the optical depth; each may be a texture.
-CHEMISTRY = ("chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin", "anthocyanins",
-             "brownpigments", "drymatter", "otherabsorption")
-_GEOMETRY = ("thickness", "mesophyllfraction")
-_NUMBERS = CHEMISTRY + _GEOMETRY + ("cuticleaspect", "epidermisaspect", "spongyaspect", "palisadeaspect", "spongyshare",
-                                     "cuticlerefractivity")
+CHEMISTRY = tuple(name for name, action in _frond.leaf_numbers() if action == "absorption")
+_GEOMETRY = tuple(name for name, action in _frond.leaf_numbers() if action == "length")
+_NUMBERS = tuple(name for name, _ in _frond.leaf_numbers())
 _WORDS = ("specimen", "absorption", "incident")
 _RGB_NM = (608.0, 551.0, 455.0)
 _SPECTRUM_NM = numpy.arange(360.0, 830.1, 2.5)
@@ -64,10 +62,7 @@ def _make(variant):
     class FrondLeaf(mi.BSDF):
         def __init__(self, props):
             mi.BSDF.__init__(self, props)
-            words = ["leaf_solved"]
-            for name in _WORDS:
-                if name in props:
-                    words.append(f"{name}={props[name]}")
+            words = ["leaf_solved"] + [f"{name}={props[name]}" for name in _WORDS if name in props]
             self.incident = _pop(props, "incident", "traced")
             # Incident "light" is "traced" with the two directions exchanged.
             table_words = [w if w != "incident=light" else "incident=traced" for w in words]

@@ -2,7 +2,6 @@
 #include "instruments/given_wavelengths.h"
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/tissue/absorption.h"
-#include "leaf/tissue/prospect.h"
 #include "materials/leaf_file.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
@@ -65,31 +64,15 @@ nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::
   const LeafParams leaf = leaf_of(*owner, material);
   const leaf::TissueParams& p = leaf.tissue();
   if (!p.pigments.empty()) fail({}, "leaf_chemistry: further pigments are none of its numbers");
-  std::vector<double> chlorophyll, carotenoids, protein, cellulose, water, anthocyanins, brown_pigments, dry_matter;
-  for (const double nm : wavelengths_nm) {
+  for (const double nm : wavelengths_nm)
     if (!leaf::kConstantsRange_nm.contains(nm)) fail({}, "leaf_chemistry: {} nm is not within 360 to 2500 nm", nm);
-    const leaf::Constants c = leaf::constants_at(nm, p.absorption_tables);
-    const leaf::ProspectConstants further = leaf::prospect_constants_at(nm);
-    anthocyanins.push_back(further.anthocyanins), dry_matter.push_back(further.dry_matter);
-    brown_pigments.push_back(further.brown_pigments);
-    chlorophyll.push_back(c.chlorophyll), carotenoids.push_back(c.carotenoids), protein.push_back(c.protein);
-    cellulose.push_back(c.cellulose), water.push_back(c.water);
+  nb::dict absorption, amount, d;
+  for (const leaf::LeafNumber& n : leaf::kLeafNumbers) {
+    if (!n.absorbs()) continue;
+    std::vector<double> specific;
+    for (const double nm : wavelengths_nm) specific.push_back(leaf::specific_absorption(n, p.absorption_tables, nm));
+    absorption[n.name.data()] = to_array(specific, {wavelengths_nm.size()}), amount[n.name.data()] = n.of(p);
   }
-  const std::vector<size_t> shape{wavelengths_nm.size()};
-  nb::dict absorption, amount;
-  absorption["chlorophylla"] = to_array(chlorophyll, shape), absorption["chlorophyllb"] = to_array(chlorophyll, shape);
-  absorption["carotenoids"] = to_array(carotenoids, shape), absorption["protein"] = to_array(protein, shape);
-  absorption["cellulose"] = to_array(cellulose, shape), absorption["lignin"] = to_array(cellulose, shape);
-  absorption["anthocyanins"] = to_array(anthocyanins, shape), absorption["drymatter"] = to_array(dry_matter, shape);
-  absorption["brownpigments"] = to_array(brown_pigments, shape);
-  absorption["water"] = to_array(water, shape);
-  absorption["otherabsorption"] = to_array(std::vector<double>(wavelengths_nm.size(), 1), shape);
-  amount["chlorophylla"] = p.chlorophyll_a, amount["chlorophyllb"] = p.chlorophyll_b;
-  amount["carotenoids"] = p.carotenoids, amount["protein"] = p.protein, amount["cellulose"] = p.cellulose;
-  amount["anthocyanins"] = p.anthocyanins, amount["drymatter"] = p.dry_matter;
-  amount["brownpigments"] = p.brown_pigments;
-  amount["lignin"] = p.lignin, amount["water"] = 1.0, amount["otherabsorption"] = p.other_absorption;
-  nb::dict d;
   d["specific_absorption"] = absorption, d["amount"] = amount;
   d["thickness"] = p.thickness_m, d["mesophyllfraction"] = p.mesophyll_fraction;
   return d;
@@ -114,6 +97,14 @@ void bind_leaf(nb::module_& m) {
         replace_file(path, {reinterpret_cast<const unsigned char*>(bytes.c_str()), bytes.size()});
       },
       "path"_a, "bytes"_a);
+  // Names of a leaf's numbers, and how they act (leaf/tissue/leaf_numbers.h).
+  m.def("leaf_numbers", [] {
+    constexpr const char* kActions[] = {"length", "absorption", "structure", "surface"};
+    std::vector<std::pair<const char*, const char*>> numbers;
+    for (const leaf::LeafNumber& n : leaf::leaf_parameters())
+      numbers.emplace_back(n.name.data(), kActions[static_cast<size_t>(n.action)]);
+    return numbers;
+  });
   m.def("leaf_chemistry", &leaf_chemistry, "session"_a, "material"_a, "wavelengths"_a);
 }
 

@@ -11,7 +11,6 @@
 #include "jobs/record/common_params.h"
 #include "jobs/support/fit_directions.h"
 #include "leaf/fit/measured_spectra.h"
-#include "leaf/tissue/area_content.h"
 #include "materials/leaf_params.h"
 #include "report/chart.h"
 #include "report/fit_report.h"
@@ -83,44 +82,52 @@ constexpr JobParam kParams[] = {
 
 /// Units of contents that --fix accepts. "g/cm2" is last: the others end like it.
 constexpr leaf::AreaUnit kAreaUnits[] = {leaf::kMicrogramsPerCm2,
-                                         {"\u00b5g/cm2", leaf::kMicrogramsPerCm2.per_kg_per_m2},
+                                         {"\u00b5g/cm2", "", leaf::kMicrogramsPerCm2.per_kg_per_m2},
                                          leaf::kMilligramsPerCm2,
                                          leaf::kGramsPerCm2};
 
-/// Whether the parameter is a concentration in the mesophyll.
-bool is_concentration(std::string_view name) {
-  if (name == "chlorophyllb" || name == "lignin") return true;
-  const auto* v = std::ranges::find(leaf::kFitVariables, name, &leaf::FitVariable::name);
-  return v != std::end(leaf::kFitVariables) && !v->is_structure && v->number != &leaf::TissueParams::thickness_m &&
-         v->number != &leaf::TissueParams::other_absorption;
+/// Returns the parameter of this name that a fit may keep; nullptr if there is none.
+const leaf::LeafNumber* fixable(std::string_view name) {
+  const leaf::LeafNumber* n = leaf::find_leaf_number(name);
+  return n && n->is_parameter() && n->action != leaf::LeafAction::surface ? n : nullptr;
 }
 
-/// Parses NAME=NUMBER for a fitted parameter, or for one that depends on a fitted parameter. Throws InputError.
+/// Parses NAME=NUMBER for a parameter or a content per leaf area. Throws InputError.
 leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& option) {
-  std::vector<std::string_view> names{"mesophyllfraction", "chlorophyllb", "lignin", "chlorophyll", "water"};
-  for (const leaf::FitVariable& v : leaf::kFitVariables) names.push_back(v.name);
   const size_t equals = word.find('=');
   const std::string name = word.substr(0, equals);
-  if (std::ranges::find(names, name) == names.end())
+  const leaf::LeafNumber* parameter = fixable(name);
+  const auto content = std::ranges::find(leaf::area_contents(), name, &leaf::AreaContent::name);
+  if (!parameter && content == leaf::area_contents().end()) {
+    std::vector<std::string_view> names;
+    for (const leaf::LeafNumber& n : leaf::kLeafNumbers)
+      if (fixable(n.name)) names.push_back(n.name);
+    for (const leaf::AreaContent& c : leaf::area_contents()) {
+      if (name == c.prospect_symbol)
+        fail({}, "{}: there is no fit parameter \"{}\"; PROSPECT's {} is {}, as {}={:g}{}", option, name, name, c.name,
+             c.name, c.unit.typical, c.unit.name);
+      if (!fixable(c.name)) names.push_back(c.name);
+    }
     fail({}, "{}: there is no fit parameter \"{}\"{}", option, name, suggestion(name, names));
+  }
   std::string number = equals == word.npos ? "" : word.substr(equals + 1);
   const auto* unit =
       std::ranges::find_if(kAreaUnits, [&](const leaf::AreaUnit& u) { return number.ends_with(u.name); });
-  const bool per_area = unit != std::end(kAreaUnits), only_per_area = name == "chlorophyll" || name == "water";
+  const bool per_area = unit != std::end(kAreaUnits);
   if (per_area) number.resize(number.size() - unit->name.size());
-  if (per_area && !only_per_area && !is_concentration(name))
+  if (per_area && parameter && parameter->content.name.empty())
     fail({}, "{} {}: {} is not a content per leaf area", option, word, name);
-  if (only_per_area && !per_area)
-    fail({}, "{} {}: a unit is needed, such as {}", option, word,
-         name == "water" ? "water=0.012g/cm2" : "chlorophyll=40ug/cm2");
+  if (!parameter && !per_area)
+    fail({}, "{} {}: a unit is needed, such as {}={:g}{}", option, word, name, content->unit.typical,
+         content->unit.name);
   auto value = parse_number(number);
   if (!value || !(*value >= 0) || !std::isfinite(*value))
     fail({}, "{} {}: {}=NUMBER is needed, 0 at least, in the scene's units or with ug/cm2, mg/cm2 or g/cm2", option,
          word, name);
-  for (const leaf::FitVariable& v : leaf::kFitVariables)
-    if (v.name == name && !(*value > 0) && (v.is_structure || v.number == &leaf::TissueParams::thickness_m))
-      fail({}, "{} {}: {} is above 0", option, word, name);
-  if (name == "water" && !(*value > 0)) fail({}, "{} {}: {} is above 0", option, word, name);
+  // Without constituents a leaf is possible, without an extent or a structure it is not.
+  const bool is_positive =
+      parameter ? parameter->is_fitted() && !parameter->absorbs() : leaf::parts_of(*content).empty();
+  if (is_positive && !(*value > 0)) fail({}, "{} {}: {} is above 0", option, word, name);
   return {name, per_area ? *value / unit->per_kg_per_m2 : *value, per_area};
 }
 
@@ -132,10 +139,15 @@ void check_contradictions(const leaf::FitRequest& request, const std::string& op
   for (const leaf::FitRequest::Fixed& fixed : request.fixed)
     if (fixed.name == "mesophyllfraction" && fixed.value == 0)
       fail({}, "{}: a mesophyll fraction of 0 absorbs nothing", option);
-  if (given("water") && given("thickness"))
-    fail({}, "{}: water per area and the mesophyll fraction give the thickness", option);
-  if (given("chlorophyll") && (given("chlorophylla") || given("chlorophyllb")))
-    fail({}, "{}: chlorophyll is the sum of chlorophylla and chlorophyllb", option);
+  for (const leaf::AreaContent& content : leaf::area_contents()) {
+    if (!given(content.name) || fixable(content.name)) continue;
+    std::vector<std::string_view> parts;
+    for (const leaf::LeafNumber* part : leaf::parts_of(content)) parts.push_back(part->name);
+    if (parts.empty() && given("thickness"))
+      fail({}, "{}: {} per area and the mesophyll fraction give the thickness", option, content.name);
+    if (std::ranges::any_of(parts, given))
+      fail({}, "{}: {} is the sum of {}", option, content.name, fmt::join(parts, " and "));
+  }
 }
 
 /// Returns the structure of --structure or --like; nullopt: fit both and select the better one. Throws InputError if
@@ -176,7 +188,7 @@ void check_values(const Arguments& args, const leaf::FitRequest& request, const 
   size_t values = 0;
   for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
   // Fewer values than parameters leave the fit undetermined, unless a prior determines the rest.
-  const auto all = static_cast<size_t>(std::ranges::count_if(leaf::kFitVariables, [&](const leaf::FitVariable& v) {
+  const auto all = static_cast<size_t>(std::ranges::count_if(leaf::fit_variables(), [&](const leaf::LeafNumber& v) {
     return !v.only_with || *v.only_with == request.absorption_tables;
   }));
   const size_t free = all - std::min(all, request.fixed.size());
@@ -196,7 +208,7 @@ const MaterialInfo& material_of(const JobRun& run) {
     for (const MaterialInfo* model : leaf_models(registry)) leaves.push_back(model->name);
     fail({}, "{}: \"{}\" is no leaf; leaves are {}", option, name, fmt::join(leaves, ", "));
   }
-  for (const Param& p : kLeafParams)
+  for (const Param& p : leaf_params())
     if (!find_param(material, p.name))
       fail({}, "{}: \"{}\" has no parameter \"{}\", which a fitted leaf needs", option, name, p.name);
   return material;
@@ -218,14 +230,12 @@ void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const Materi
 
 /// Throws InputError if contents per area that were given lead to a leaf that the material would refuse.
 void check_fitted(const leaf::TissueParams& fitted, const MaterialInfo& material, const std::string& option) {
-  const auto check = [&](std::string_view name, double value) {
-    const Param* p = find_param(material, name);
-    if (p && !p->range.contains(value))
-      fail({}, "{}: the contents per area need {} {:g}, outside its range {:g} to {:g} {}", option, name, value,
-           p->range.min, p->range.max, p->unit);
-  };
-  for (const leaf::FitVariable& v : leaf::kFitVariables) check(v.name, fitted.*v.number);
-  check("chlorophyllb", fitted.chlorophyll_b);
+  for (const leaf::LeafNumber& n : leaf::leaf_parameters()) {
+    const Param* p = find_param(material, n.name);
+    if (p && !p->range.contains(n.of(fitted)))
+      fail({}, "{}: the contents per area need {} {:g}, outside its range {:g} to {:g} {}", option, n.name,
+           n.of(fitted), p->range.min, p->range.max, p->unit);
+  }
 }
 
 /// A file as a whole.

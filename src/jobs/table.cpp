@@ -160,7 +160,7 @@ std::string kilobytes(size_t bytes) { return fmt::format("{} kB", (bytes + 512) 
 
 /// Writes the table of shares as CSV.
 Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
-  const PluginInfo only_tissue{"the table of", leaf.model.name, "", "", kLeafParams};
+  const PluginInfo only_tissue{"the table of", leaf.model.name, "", "", leaf_params()};
   const Arguments& args = run.args;
   leaf::TableRequest request{.params = LeafParams(params_of(only_tissue, leaf.text)).tissue(),
                              .wavelengths_nm = wavelengths_of(args),

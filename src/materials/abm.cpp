@@ -18,7 +18,7 @@ constexpr Param kOwn[] = {
      .choices = kModes},
 };
 // Without incident "reciprocal": a random walk cannot be symmetrised. leaf_solved can.
-constexpr auto kAbm = without_reciprocal(with_leaf_params(kOwn));
+const std::vector<Param> kAbm = without_reciprocal(with_leaf_params(kOwn));
 
 // Walks run in double: cosines of grazing rays are small.
 Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }

@@ -30,7 +30,7 @@ constexpr Param kOwn[] = {
      .range = {1e-6, 1},
      .doc = "The same error relative to each channel's mean over the image, such as 0.02."},
 };
-constexpr auto kLeaf = with_leaf_params(kOwn);
+const std::vector<Param> kLeaf = with_leaf_params(kOwn);
 
 /// Whether a texture gives the aspect ratio of an inner wall, for which no table holds.
 bool has_wall_textures(const Params& p) {

@@ -32,7 +32,7 @@ constexpr Param kOwn[] = {
     kTableFile,
     kTableLeaf,
 };
-constexpr auto kLeafLambert = with_leaf_params(kOwn);
+const std::vector<Param> kLeafLambert = with_leaf_params(kOwn);
 
 /// An angle of incidence, and its weight in the mean of a side.
 struct Incidence {

@@ -1,5 +1,7 @@
 #include "materials/leaf_params.h"
 
+#include <algorithm>
+
 #include "leaf/tissue/absorption.h"
 #include "leaf/tissue/constants.h"
 #include "spectra/check_range.h"
@@ -7,9 +9,47 @@
 
 namespace frond {
 
+using leaf::LeafNumber;
 using leaf::TissueParams;
 
 namespace {
+
+constexpr std::string_view kAbsorption[] = {"baranoski", "prospect"};
+constexpr std::string_view kIncident[] = {"traced", "light", "reciprocal"};
+
+// clang-format off
+constexpr Param kSpecimen{
+    .name = "specimen", .kind = ParamKind::string, .default_value = std::string_view("soybean"),
+    .doc = "Named set of leaf parameters, from the literature or fitted to measurements (frond list specimens): the "
+           "structure, and the parameters that are not given.", .choices = leaf::kSpecimenNames};
+constexpr Param kTables{
+    .name = "absorption", .kind = ParamKind::string,
+    .doc = "Specific absorption of chlorophylls, carotenoids and water. baranoski: as published with the model; "
+           "prospect: as calibrated for PROSPECT-D; by default the specimen's.", .choices = kAbsorption};
+constexpr Param kOthers[] = {
+    {.name = "pigments", .kind = ParamKind::string,
+     .doc = "Spectrum files (.spd, .csv) of the specific absorption of further pigments, in nm and m^2/kg.",
+     .list = true},
+    {.name = "pigmentconcentrations", .kind = ParamKind::float_texture, .unit = leaf::kMassPerVolume, .range = {0, 100},
+     .doc = "Concentrations of these pigments in the mesophyll, one for each file.", .list = true},
+    {.name = "sieve", .kind = ParamKind::boolean,
+     .doc = "Absorption with the sieve and detour effects (Baranoski and Eng 2007); by default the specimen's, which "
+            "is false for soybean and maize."},
+    {.name = "incident", .kind = ParamKind::string, .default_value = std::string_view("traced"),
+     .doc = "Incident direction of the model, which is not reciprocal. traced: that of the traced ray, as published; "
+            "light: that of the light; reciprocal: neither, the reciprocal BSDF closest to the model replaces it "
+            "(docs/leaf_models.md).", .choices = kIncident},
+};
+// clang-format on
+
+Param param_of(const LeafNumber& n) {
+  return {.name = n.name,
+          .kind = n.takes_texture ? ParamKind::float_texture : ParamKind::real,
+          .unit = n.unit,
+          .range = n.range,
+          .doc = n.doc,
+          .quantity = n.quantity};
+}
 
 Incident incident_of(std::string_view word) {
   if (word == "reciprocal") return Incident::reciprocal;
@@ -17,6 +57,43 @@ Incident incident_of(std::string_view word) {
 }
 
 }  // namespace
+
+const std::vector<Param>& leaf_params() {
+  static const std::vector<Param> params = [] {
+    std::vector<Param> all{kSpecimen};
+    for (const LeafNumber& n : leaf::leaf_parameters())
+      if (n.acts_by_depth()) all.push_back(param_of(n));
+    all.push_back(kTables);
+    for (const bool takes_texture : {false, true})
+      for (const LeafNumber& n : leaf::leaf_parameters())
+        if (!n.acts_by_depth() && n.takes_texture == takes_texture) all.push_back(param_of(n));
+    all.insert(all.end(), std::begin(kOthers), std::end(kOthers));
+    return all;
+  }();
+  return params;
+}
+
+bool is_of_tissue(const Param& leaf_param) {
+  const LeafNumber* n = leaf::find_leaf_number(leaf_param.name);
+  return n ? n->action != leaf::LeafAction::surface : leaf_param.name != "specimen" && leaf_param.name != "incident";
+}
+
+std::vector<Param> with_leaf_params(std::span<const Param> own) {
+  std::vector<Param> all = leaf_params();
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+std::vector<Param> without_reciprocal(std::vector<Param> params) {
+  for (Param& p : params)
+    if (p.name == "incident") {
+      p.doc =
+          "Incident direction of the model, which is not reciprocal. traced: that of the traced ray, as published; "
+          "light: that of the light.";
+      p.choices = std::span(kIncident).first(2);
+    }
+  return params;
+}
 
 LeafParams::LeafParams(const Params& p)
     // Starts from the specimen's parameters; `read` replaces those that the scene gives.
@@ -29,40 +106,24 @@ LeafParams::LeafParams(const Params& p)
 
 leaf::DepthMap LeafParams::read(const Params& p) {
   Varying varying;
-  /// Sets a parameter; returns its texture if that varies over the leaf.
-  const auto replace = [&p, this](double TissueParams::*number, std::string_view name) -> Aspect {
-    if (!p.given(name)) return nullptr;
-    if (!p.is_texture(name)) {
-      tissue_.*number = p.real(name);
-      return nullptr;
+  for (const LeafNumber& n : leaf::leaf_parameters()) {
+    if (!p.given(n.name)) continue;
+    if (!p.is_texture(n.name)) {
+      n.of(tissue_) = p.real(n.name);
+      continue;
     }
-    const auto texture = p.float_texture(name);
+    const auto texture = p.float_texture(n.name);
     // The largest value bounds the depth; DepthMap evaluates the texture itself.
-    tissue_.*number = texture->range().max;
-    return texture->is_constant() ? nullptr : texture;
-  };
-  struct Named {
-    double TissueParams::*number;
-    std::string_view name;
-  };
-  for (const auto& [number, name] :
-       {Named{&TissueParams::thickness_m, "thickness"}, Named{&TissueParams::mesophyll_fraction, "mesophyllfraction"},
-        Named{&TissueParams::chlorophyll_a, "chlorophylla"}, Named{&TissueParams::chlorophyll_b, "chlorophyllb"},
-        Named{&TissueParams::carotenoids, "carotenoids"}, Named{&TissueParams::protein, "protein"},
-        Named{&TissueParams::cellulose, "cellulose"}, Named{&TissueParams::lignin, "lignin"},
-        Named{&TissueParams::anthocyanins, "anthocyanins"}, Named{&TissueParams::brown_pigments, "brownpigments"},
-        Named{&TissueParams::dry_matter, "drymatter"}, Named{&TissueParams::other_absorption, "otherabsorption"}})
-    if (auto texture = replace(number, name))
-      varying.push_back({[number = number](TissueParams& t) -> double& { return t.*number; }, std::move(texture)});
-  aspects_ = {replace(&TissueParams::cuticle_aspect, "cuticleaspect"),
-              replace(&TissueParams::epidermis_aspect, "epidermisaspect"),
-              replace(&TissueParams::spongy_aspect, "spongyaspect"),
-              replace(&TissueParams::palisade_aspect, "palisadeaspect")};
+    n.of(tissue_) = texture->range().max;
+    if (texture->is_constant()) continue;
+    if (n.acts_by_depth())
+      varying.push_back({[&n](TissueParams& t) -> double& { return n.of(t); }, texture});
+    else
+      aspects_.push_back({&n, texture});
+  }
   if (p.given("absorption"))
     tissue_.absorption_tables =
         p.string("absorption") == "prospect" ? leaf::AbsorptionTables::prospect : leaf::AbsorptionTables::baranoski;
-  if (p.given("spongyshare")) tissue_.spongy_share = p.real("spongyshare");
-  if (p.given("cuticlerefractivity")) tissue_.cuticle_refractivity = p.real("cuticlerefractivity");
   if (p.given("sieve")) tissue_.sieve_and_detour = p.boolean("sieve");
   read_pigments(p, varying);
   return {tissue_, varying};
@@ -87,16 +148,17 @@ void LeafParams::read_pigments(const Params& p, Varying& varying) {
   }
 }
 
+const LeafParams::Aspect& LeafParams::aspect(double TissueParams::*member) const {
+  static const Aspect none;
+  const auto found = std::ranges::find(aspects_, member, [](const auto& a) { return a.first->member; });
+  return found == aspects_.end() ? none : found->second;
+}
+
 void LeafParams::refuse_wall_textures(const Params& p) const {
-  struct Wall {
-    std::string_view name;
-    const Aspect& texture;
-  };
-  for (const auto& [name, texture] : {Wall{"epidermisaspect", epidermis_aspect()},
-                                      Wall{"spongyaspect", spongy_aspect()}, Wall{"palisadeaspect", palisade_aspect()}})
-    if (texture)
-      fail(p.where(name), "{} takes no texture for \"{}\": each texel would need its own table; abm takes one",
-           p.plugin(), name);
+  for (const auto& [number, texture] : aspects_)
+    if (number->is_structure())
+      fail(p.where(number->name), "{} takes no texture for \"{}\": each texel would need its own table; abm takes one",
+           p.plugin(), number->name);
 }
 
 void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {

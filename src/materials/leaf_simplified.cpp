@@ -48,7 +48,7 @@ constexpr Param kOwn[] = {
          "Share of light that the surface lobe reflects, at most R, where tablefile holds measured R and T. It moves "
          "light from the diffuse lobe to the surface lobe: R stays as measured."},
 };
-constexpr auto kLeafSimplified = with_leaf_params(kOwn);
+const std::vector<Param> kLeafSimplified = with_leaf_params(kOwn);
 
 // Parameters that have no effect with "tablefile".
 constexpr std::string_view kOfTable[] = {"tablemethod", "tablerays", "tablestep"};

@@ -27,7 +27,7 @@ constexpr Param kOwn[] = {
      .doc = "File with the leaf's mode table, made by frond table leaf_solved (docs/file_formats.md); replaces all "
             "parameters of the tissue."},
 };
-constexpr auto kLeafSolved = with_leaf_params(kOwn);
+const std::vector<Param> kLeafSolved = with_leaf_params(kOwn);
 
 /// Leaf by the solved walk of `abm`: the same BSDF without noise.
 class LeafSolved final : public Material {

@@ -4,35 +4,16 @@
 
 #include "core/log.h"
 #include "leaf/fit/measured_table.h"
+#include "materials/leaf_params.h"
 
 namespace frond {
-namespace {
-
-// Parameters that a table file replaces.
-constexpr std::string_view kOfTissue[] = {"thickness",
-                                          "mesophyllfraction",
-                                          "chlorophylla",
-                                          "chlorophyllb",
-                                          "carotenoids",
-                                          "protein",
-                                          "cellulose",
-                                          "lignin",
-                                          "otherabsorption",
-                                          "pigments",
-                                          "pigmentconcentrations",
-                                          "epidermisaspect",
-                                          "palisadeaspect",
-                                          "spongyaspect",
-                                          "sieve"};
-
-}  // namespace
-
 TableFileParam::TableFileParam(const Params& p, std::span<const std::string_view> also) {
   if (!p.given("tablefile")) return;
   path_ = p.file("tablefile");
   where_ = p.where("tablefile");
-  look_for(p, kOfTissue);
-  look_for(p, also);
+  for (const Param& of_leaf : leaf_params())
+    if (is_of_tissue(of_leaf)) look_for(p, of_leaf.name);
+  for (const std::string_view name : also) look_for(p, name);
 }
 
 std::shared_ptr<const leaf::Table> TableFileParam::read(const Params& p, double surface) {
@@ -48,9 +29,8 @@ std::shared_ptr<const leaf::Table> TableFileParam::read(const Params& p, double 
   return std::make_shared<const leaf::Table>(std::move(read.table));
 }
 
-void TableFileParam::look_for(const Params& p, std::span<const std::string_view> names) {
-  for (const std::string_view name : names)
-    if (p.given(name)) unused_.push_back({name, p.where(name)});
+void TableFileParam::look_for(const Params& p, std::string_view name) {
+  if (p.given(name)) unused_.push_back({name, p.where(name)});
 }
 
 void TableFileParam::warn(const Log& log) {

@@ -44,16 +44,12 @@ class TableFileParam {
   void warn(const Log& log);
 
  private:
-  struct Unused {
-    std::string_view name;
-    Location where;
-  };
-  void look_for(const Params& p, std::span<const std::string_view> names);
+  void look_for(const Params& p, std::string_view name);
 
   std::filesystem::path path_;  ///< empty: no file is given
   Location where_;
-  std::vector<Unused> unused_;
-  std::string changes_;  ///< warning of `read`
+  std::vector<std::pair<std::string_view, Location>> unused_;  ///< parameters without effect
+  std::string changes_;                                        ///< warning of `read`
   std::string key_;
 };
 

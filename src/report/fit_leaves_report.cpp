@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 
-#include "leaf/tissue/area_content.h"
 #include "report/fit_report.h"
 
 // Reports of fits of many leaves.
@@ -13,26 +12,15 @@
 namespace frond {
 namespace {
 
-using leaf::FitVariable;
+using leaf::LeafNumber;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Column of a content per leaf area, in the unit that the literature uses.
-struct ContentColumn {
-  std::string_view content, column;
-  leaf::AreaUnit unit;
-};
-constexpr ContentColumn kContents[] = {{"chlorophyll", "chlorophyll_ug_cm2", leaf::kMicrogramsPerCm2},
-                                       {"carotenoids", "carotenoids_ug_cm2", leaf::kMicrogramsPerCm2},
-                                       {"anthocyanins", "anthocyanins_ug_cm2", leaf::kMicrogramsPerCm2},
-                                       {"brownpigments", "brownpigments_content", leaf::kProspectUnits},
-                                       {"water", "water_g_cm2", leaf::kGramsPerCm2},
-                                       {"drymatter", "drymatter_g_cm2", leaf::kGramsPerCm2}};
-
 void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Table& table) {
   std::vector<std::string_view> undetermined;
-  for (const FitVariable& v : leaf::kFitVariables) {
-    if (v.only_with && *v.only_with != tables) continue;
+  const auto is_stated = [tables](const LeafNumber& n) { return !n.only_with || *n.only_with == tables; };
+  for (const LeafNumber& v : leaf::fit_variables()) {
+    if (!is_stated(v)) continue;
     const auto& numbers = leaf.result.numbers;
     const auto n = std::ranges::find(numbers, &v, &leaf::FittedNumber::variable);
     const bool has = leaf.error.empty() && n != numbers.end();
@@ -40,18 +28,21 @@ void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Ta
     table.add(std::string(v.name), has ? n->value : kNone, has && !n->is_fixed ? n->value * n->relative_error : kNone);
     if (has && !n->is_fixed && !n->is_identified()) undetermined.push_back(v.name);
   }
-  table.add("chlorophyllb", leaf.error.empty() ? leaf.result.params.chlorophyll_b : kNone);
-  table.add("mesophyllfraction", leaf.error.empty() ? leaf.result.params.mesophyll_fraction : kNone);
+  // Those that follow others, then those that are the specimen's.
+  for (const bool follows : {true, false})
+    for (const LeafNumber& n : leaf::leaf_parameters())
+      if (!n.is_fitted() && n.action != leaf::LeafAction::surface && n.follows.empty() != follows && is_stated(n))
+        table.add(std::string(n.name), leaf.error.empty() ? n.of(leaf.result.params) : kNone);
   table.add("undetermined", fmt::format("{}", fmt::join(undetermined, " ")));
 }
 
 void add_contents(const LeafFitReport& leaf, Table& table) {
-  for (const ContentColumn& c : kContents) {
+  for (const leaf::AreaContent& c : leaf::area_contents()) {
     const auto& contents = leaf.result.contents;
-    const auto found = std::ranges::find(contents, c.content, &leaf::FittedContent::name);
+    const auto found = std::ranges::find(contents, c.name, &leaf::FittedContent::name);
     const bool has = leaf.error.empty() && found != contents.end();
     const double value = has ? found->kg_per_m2 * c.unit.per_kg_per_m2 : kNone;
-    table.add(std::string(c.column), value, has ? value * found->relative_error : kNone);
+    table.add(fmt::format("{}{}", c.name, c.unit.column), value, has ? value * found->relative_error : kNone);
   }
 }
 
@@ -61,10 +52,13 @@ void document(Table& table) {
       "rmse",
       "root mean square error of R and T together; rmse_R, rmse_T: of one of them, blank if it was not measured");
   table.document("misfits", "number of bands in which R or T is off by more than 0.01");
+  std::vector<std::string_view> coefficients;
+  for (const LeafNumber& n : leaf::leaf_parameters())
+    if (n.absorbs() && n.unit != leaf::kMassPerVolume) coefficients.insert(coefficients.begin(), n.name);
   table.document("thickness",
-                 "m; concentrations in kg/m^3, otherabsorption and brownpigments in 1/m; columns ending in _se: "
-                 "standard errors, those "
-                 "of the logarithms times the value, blank for a given value");
+                 fmt::format("m; concentrations in kg/m^3, {} in 1/m; columns ending in _se: standard errors, those of "
+                             "the logarithms times the value, blank for a given value",
+                             fmt::join(coefficients, " and ")));
   table.document("undetermined", "parameters that the data do not determine: no measurements, they complete the leaf");
 }
 

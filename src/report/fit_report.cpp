@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "core/error.h"
-#include "leaf/tissue/area_content.h"
 #include "report/share_tables.h"
 
 namespace frond {
 namespace {
 
 using leaf::FittedNumber;
-using leaf::TissueParams;
+using leaf::LeafNumber;
 
 /// A range of wavelengths by its usual name.
 struct NamedBand {
@@ -32,33 +31,14 @@ constexpr double kGoTogether = 0.9;
 /// Whether the leaf absorbs with PROSPECT-D's tables.
 bool is_prospect(const leaf::FitResult& r) { return r.params.absorption_tables == leaf::AbsorptionTables::prospect; }
 
-/// A parameter of the leaf, by its name and in its unit in scene files.
-struct Said {
-  std::string_view name;
-  double value;
-};
-/// Returns all parameters that a scene file states.
-std::vector<Said> said(const FitReport& report) {
-  const TissueParams& p = report.result.params;
-  std::vector<Said> all{{"thickness", p.thickness_m},
-                        {"mesophyllfraction", p.mesophyll_fraction},
-                        {"chlorophylla", p.chlorophyll_a},
-                        {"chlorophyllb", p.chlorophyll_b},
-                        {"carotenoids", p.carotenoids},
-                        {"protein", p.protein},
-                        {"cellulose", p.cellulose},
-                        {"lignin", p.lignin},
-                        {"anthocyanins", p.anthocyanins},
-                        {"brownpigments", p.brown_pigments},
-                        {"drymatter", p.dry_matter},
-                        {"otherabsorption", p.other_absorption},
-                        {"epidermisaspect", p.epidermis_aspect},
-                        {"spongyaspect", p.spongy_aspect},
-                        {"cuticlerefractivity", p.cuticle_refractivity}};
-  if (p.structure == leaf::Structure::bifacial) {
-    all.push_back({"palisadeaspect", p.palisade_aspect});
-    all.push_back({"spongyshare", p.spongy_share});
-  }
+/// Returns all parameters that a scene file states; those of bifacial leaves are the last.
+std::vector<const LeafNumber*> said(const FitReport& report) {
+  std::vector<const LeafNumber*> all;
+  for (const bool only_bifacial : {false, true})
+    for (const LeafNumber& n : leaf::leaf_parameters())
+      if (n.only_bifacial == only_bifacial && n.action != leaf::LeafAction::surface &&
+          leaf::has_number(report.result.params.structure, n))
+        all.push_back(&n);
   return all;
 }
 
@@ -75,22 +55,6 @@ std::string note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
   if (n.is_at_bound) return "at a limit of its range: not determined by the data";
   return n.is_identified() ? "" : "not determined by the data";
-}
-
-/// Returns the unit of a parameter in scene files; empty: none.
-std::string_view unit_of(const FittedNumber& n) {
-  if (n.variable->is_structure) return "";
-  if (n.variable->number == &TissueParams::thickness_m) return "m";
-  const bool is_per_length =
-      n.variable->number == &TissueParams::other_absorption || n.variable->number == &TissueParams::brown_pigments;
-  return is_per_length ? "1/m" : "kg/m^3";
-}
-
-/// The unit that the literature uses: micrograms for pigments, PROSPECT's unit for brown ones, grams for water and dry
-/// matter.
-leaf::AreaUnit area_unit_of(const leaf::FittedContent& c) {
-  if (c.name == "brownpigments") return leaf::kProspectUnits;
-  return c.name == "water" || c.name == "drymatter" ? leaf::kGramsPerCm2 : leaf::kMicrogramsPerCm2;
 }
 
 /// Whether the leaf's surface alone reflects more than was measured in the band.
@@ -136,8 +100,8 @@ std::string fit_scene(const FitReport& report, const std::string& name) {
   text += name.empty() ? fmt::format("Material \"{}\"", report.material)
                        : fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"", name, report.material);
   text += fmt::format(" \"string specimen\" \"{}\"\n", result.specimen->name);
-  for (const auto& [parameter, value] : said(report))
-    text += fmt::format("    \"float {}\" {:.6g}\n", parameter, value);
+  for (const LeafNumber* n : said(report))
+    text += fmt::format("    \"float {}\" {:.6g}\n", n->name, n->of(result.params));
   if (is_prospect(result)) text += "    \"string absorption\" \"prospect\"\n";
   if (result.params.sieve_and_detour) text += "    \"bool sieve\" true\n";
   return text;
@@ -146,7 +110,7 @@ std::string fit_scene(const FitReport& report, const std::string& name) {
 std::string fit_words(const FitReport& report, const std::string& material) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("{},specimen={}", material, result.specimen->name);
-  for (const auto& [parameter, value] : said(report)) text += fmt::format(",{}={:.6g}", parameter, value);
+  for (const LeafNumber* n : said(report)) text += fmt::format(",{}={:.6g}", n->name, n->of(result.params));
   if (is_prospect(result)) text += ",absorption=prospect";
   if (result.params.sieve_and_detour) text += ",sieve=true";
   return text;
@@ -165,19 +129,17 @@ std::string fit_text(const FitReport& report) {
   text += fmt::format("structure of {}, {} the sieve effect\n", result.specimen->name,
                       result.params.sieve_and_detour ? "with" : "without");
   for (const FittedNumber& n : result.numbers)
-    text += fmt::format("  {:<20} {:>10.4g} {:<8}{}{}\n", n.variable->name, n.value, unit_of(n),
+    text += fmt::format("  {:<20} {:>10.4g} {:<8}{}{}\n", n.variable->name, n.value, n.variable->unit,
                         n.is_identified() ? fmt::format("+- {:.2g} %", 100 * n.relative_error) : "", note(n));
-  text +=
-      fmt::format("  chlorophyllb {:.4g} follows chlorophylla, which absorbs alike;\n", result.params.chlorophyll_b);
-  if (result.params.lignin > 0)
-    text += fmt::format("  lignin {:.4g} follows cellulose, which absorbs alike;\n", result.params.lignin);
+  for (const LeafNumber& n : leaf::leaf_parameters())
+    if (!n.follows.empty() && (n.of(result.params) > 0 || !n.only_with))
+      text += fmt::format("  {} {:.4g} follows {}, which absorbs alike;\n", n.name, n.of(result.params), n.follows);
   text += fmt::format("  mesophyllfraction {:.4g} acts by its product with the thickness alone\n",
                       result.params.mesophyll_fraction);
   constexpr double kExact = 1e-9;  // relative error of a content that was given
   text += "per leaf area\n";
   for (const leaf::FittedContent& c : result.contents) {
-    const auto [unit, scale] = area_unit_of(c);
-    text += fmt::format("  {:<20} {:>10.4g} {:<8}{}\n", c.name, c.kg_per_m2 * scale, unit,
+    text += fmt::format("  {:<20} {:>10.4g} {:<8}{}\n", c.name, c.kg_per_m2 * c.unit.per_kg_per_m2, c.unit.name,
                         c.relative_error > kExact && c.relative_error < 0.5
                             ? fmt::format("+- {:.2g} %", 100 * c.relative_error)
                         : c.relative_error > kExact ? "not determined by the data"
@@ -221,21 +183,21 @@ std::vector<Table> fit_tables(const FitReport& report) {
     spectra.add("T_fitted", result.fitted[i].t);
     spectra.add_flag("outlier", result.fitted[i].is_outlier);
   }
-  for (const auto& [name, value] : said(report)) leaf.add("name", std::string(name)), leaf.add("value", value);
+  for (const LeafNumber* n : said(report))
+    leaf.add("name", std::string(n->name)), leaf.add("value", n->of(result.params));
   for (const FittedNumber& n : result.numbers) {
     numbers.add("name", std::string(n.variable->name));
     numbers.add("value", n.value);
-    numbers.add("unit", std::string(unit_of(n)));
+    numbers.add("unit", std::string(n.variable->unit));
     numbers.add("relative_standard_error", n.relative_error);
     numbers.add_flag("fixed", n.is_fixed);
     numbers.add_flag("at_bound", n.is_at_bound);
     numbers.add_flag("identified", n.is_identified());
   }
   for (const leaf::FittedContent& c : result.contents) {
-    const auto [unit, scale] = area_unit_of(c);
     contents.add("name", std::string(c.name));
-    contents.add("value", c.kg_per_m2 * scale);
-    contents.add("unit", std::string(unit));
+    contents.add("value", c.kg_per_m2 * c.unit.per_kg_per_m2);
+    contents.add("unit", std::string(c.unit.name));
     contents.add("relative_standard_error", c.relative_error);
   }
   for (const leaf::MisfitBand& band : result.misfits) {

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "leaf/tissue/leaf_numbers.h"
+
 namespace frond {
 namespace {
 
@@ -31,7 +33,7 @@ const Layers kAllowed{
     {"integrators", {"core", "spectra", "scene"}},
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
     {"instruments", {"core", "spectra"}},
-    {"exports", {"core", "system", "spectra", "image", "scene", "instruments"}},
+    {"exports", {"core", "system", "spectra", "leaf", "image", "scene", "instruments"}},
     {"imports", {"core", "system", "image", "scene"}},
     {"assimp", {"imports"}},
     {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
@@ -347,6 +349,55 @@ TEST(Architecture, TypesOfOneNameAreDefinedOnce) {
   EXPECT_GT(defined.size(), 400u);
   for (const auto& [name, files] : defined)
     EXPECT_EQ(files.size(), 1u) << name << ": " << testing::PrintToString(files);
+}
+
+/// Lines that name one of `names` as a string or as an identifier (drymatter: dry_matter too), but not in a comment or
+/// within a sentence. `line` is a comment's start in the language.
+std::set<std::string> lines_with(const std::set<std::string>& names, const std::string& text,
+                                 const std::string& comment) {
+  static const std::regex literal(R"re("((?:[^"\\]|\\.)*)")re"), word(R"re([A-Za-z_][A-Za-z_0-9]*)re");
+  std::set<std::string> found;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    std::set<std::string> used;
+    for (std::sregex_iterator i(line.begin(), line.end(), literal), end; i != end; ++i) used.insert((*i)[1]);
+    std::string code = std::regex_replace(line, literal, "");
+    code.erase(std::min(code.size(), code.find(comment)));
+    for (std::sregex_iterator i(code.begin(), code.end(), word), end; i != end; ++i) {
+      std::string name = i->str();
+      std::erase(name, '_');
+      used.insert(name);
+    }
+    if (std::ranges::any_of(used, [&](const std::string& u) { return names.contains(u); })) found.insert(line);
+  }
+  return found;
+}
+
+/// A constituent is a row of the table in leaf/tissue: what else names one would lack the next one. core/units knows by
+/// PhysicalQuantity in which other units the literature gives a quantity.
+TEST(Architecture, ConstituentsAreNamedInTheirTableAlone) {
+  std::set<std::string> names{"chlorophyll", "carotenoid", "anthocyanin", "brownpigment"};
+  for (const leaf::LeafNumber& n : leaf::kLeafNumbers)
+    if (n.absorbs()) names.insert(std::string(n.name));
+  names.erase("water");  // of clouds, as well
+  EXPECT_TRUE(names.contains("drymatter"));
+  const auto of = [](const char* text) { return std::string(text); };
+  EXPECT_EQ(lines_with(names, of("f(\"lignin\");\ng(p.dry_matter);\nh(\"lignin is x\");  // lignin\n"), "//"),
+            (std::set<std::string>{"f(\"lignin\");", "g(p.dry_matter);"}));
+  static const std::regex docstring(R"re("""[^"]*(?:"[^"]+)*""")re");
+  int read = 0;
+  for (const char* folder : {"/src", "/python/src", "/python/frond"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(FROND_SOURCE_DIR) + folder)) {
+      const std::string path = entry.path().string(), extension = entry.path().extension().string();
+      if (extension != ".h" && extension != ".cpp" && extension != ".py") continue;
+      if (path.find("/leaf/tissue/") != path.npos || path.find("/core/units/") != path.npos) continue;
+      std::ifstream in(entry.path());
+      std::string text{std::istreambuf_iterator<char>(in), {}};
+      if (extension == ".py") text = std::regex_replace(text, docstring, "");
+      EXPECT_EQ(lines_with(names, text, extension == ".py" ? "#" : "//"), std::set<std::string>{}) << path;
+      ++read;
+    }
+  EXPECT_GT(read, 700);
 }
 
 // Linking it takes 0.3 s: it is opened where an image needs it (image/image_codec.h).

@@ -54,7 +54,7 @@ TEST(LeafConstants, OfProspectAreLinearBetweenNodes) {
 TEST(TissueModel, TakesProspectsAbsorptionIfAsked) {
   TissueParams p = find_specimen("soybean")->params;
   const double published = absorption_coefficient(p, 670);
-  p.anthocyanins = 2, p.dry_matter = 100, p.brown_pigments = 3000;
+  p.number("anthocyanins") = 2, p.number("drymatter") = 100, p.number("brownpigments") = 3000;
   const ProspectConstants c = prospect_constants_at(670);
   EXPECT_NEAR(absorption_coefficient(p, 670),
               published + 2 * c.anthocyanins + 100 * c.dry_matter + 3000 * c.brown_pigments, 1e-9 * published);

@@ -29,8 +29,8 @@ TEST(DepthMap, IsTheModelsDepthEverywhere) {
   TissueParams leaf = find_specimen("soybean")->params;
   leaf.pigments.push_back({2, std::vector<double>(kAbsorptionGrid.size(), 30)});
   const std::vector<DepthMap::Varying> varying{
-      {[](TissueParams& t) -> double& { return t.chlorophyll_b; }, std::make_shared<Ramp>(0.f, 2.f)},
-      {[](TissueParams& t) -> double& { return t.lignin; }, std::make_shared<Ramp>(5.f, 500.f)},
+      {[](TissueParams& t) -> double& { return t.number("chlorophyllb"); }, std::make_shared<Ramp>(0.f, 2.f)},
+      {[](TissueParams& t) -> double& { return t.number("lignin"); }, std::make_shared<Ramp>(5.f, 500.f)},
       {[](TissueParams& t) -> double& { return t.pigments[0].concentration; }, std::make_shared<Ramp>(1.f, 3.f)},
       {[](TissueParams& t) -> double& { return t.thickness_m; }, std::make_shared<Ramp>(1e-4f, 2e-4f)},
       {[](TissueParams& t) -> double& { return t.mesophyll_fraction; }, std::make_shared<Ramp>(0.25f, 1.f)}};

@@ -31,11 +31,11 @@ std::vector<LeafMeasurement> spectra_of(const TissueParams& params, const std::v
 TissueParams another(std::string_view specimen) {
   TissueParams p = find_specimen(specimen)->params;
   p.thickness_m *= 1.6;
-  p.chlorophyll_a *= 0.5, p.chlorophyll_b *= 0.5;
-  p.carotenoids *= 1.4;
-  p.protein *= 1.5;
-  p.cellulose *= 0.7, p.lignin *= 0.7;
-  p.other_absorption = 90;
+  p.number("chlorophylla") *= 0.5, p.number("chlorophyllb") *= 0.5;
+  p.number("carotenoids") *= 1.4;
+  p.number("protein") *= 1.5;
+  p.number("cellulose") *= 0.7, p.number("lignin") *= 0.7;
+  p.number("otherabsorption") = 90;
   p.epidermis_aspect = 3, p.spongy_aspect = 7, p.palisade_aspect = 2;
   p.sieve_and_detour = true;
   return p;
@@ -45,8 +45,8 @@ TissueParams another(std::string_view specimen) {
 TissueParams another_of_prospect() {
   TissueParams p = another("soybean");
   p.absorption_tables = AbsorptionTables::prospect;
-  p.protein = p.cellulose = p.lignin = 0;
-  p.anthocyanins = 0.5, p.dry_matter = 200;
+  p.number("protein") = p.number("cellulose") = p.number("lignin") = 0;
+  p.number("anthocyanins") = 0.5, p.number("drymatter") = 200;
   p.spongy_share = 0.25;
   p.cuticle_refractivity = 0.6;
   return p;
@@ -62,7 +62,7 @@ void expect_found(const TissueParams& truth, const FitRequest& request, double t
     if (!n.is_identified()) continue;
     ++identified;
     // Parameters that the data hardly separate are found within their errors.
-    EXPECT_LT(std::abs(std::log(n.value / (truth.*n.variable->number))), std::max(tolerance, n.relative_error))
+    EXPECT_LT(std::abs(std::log(n.value / n.variable->of(truth))), std::max(tolerance, n.relative_error))
         << n.variable->name;
   }
   EXPECT_GE(identified, 4);
@@ -86,7 +86,7 @@ TEST(Fit, FindsALeafOfProspectsAbsorptionAgain) {
 /// R without the specular part lies below the surface's share of the published cuticle, 0.04.
 TEST(Fit, FollowsLeavesThatAreDarkerThanTheCuticle) {
   TissueParams truth = another_of_prospect();
-  truth.chlorophyll_a *= 4, truth.chlorophyll_b *= 4, truth.cuticle_refractivity = 0.4;
+  truth.number("chlorophylla") *= 4, truth.number("chlorophyllb") *= 4, truth.cuticle_refractivity = 0.4;
   const FitRequest request{.measurements = spectra_of(truth, {8}, 10)};
   const auto red = std::ranges::find(request.measurements, 670.0, &LeafMeasurement::lambda_nm);
   EXPECT_LT(*red->r, 0.025);
@@ -117,8 +117,8 @@ TEST(Fit, KeepsContentsPerAreaWhileTheThicknessIsFitted) {
                    {"drymatter", 0.004 / kGramsPerCm2.per_kg_per_m2, true}};
   const FitResult result = fit_leaf(request, ThreadPool(2));
   const TissueParams& p = result.params;
-  EXPECT_NEAR(area_content(p, p.chlorophyll_a + p.chlorophyll_b), 4e-4, 1e-12);
-  EXPECT_NEAR(area_content(p, p.dry_matter), 0.04, 1e-12);
+  EXPECT_NEAR(area_content(p, p.number("chlorophylla") + p.number("chlorophyllb")), 4e-4, 1e-12);
+  EXPECT_NEAR(area_content(p, p.number("drymatter")), 0.04, 1e-12);
   const auto chlorophyll = std::ranges::find(result.contents, "chlorophyll", &FittedContent::name);
   ASSERT_NE(chlorophyll, result.contents.end());
   EXPECT_NEAR(chlorophyll->relative_error, 0, 1e-9);
@@ -141,10 +141,12 @@ TEST(Fit, KeepsWhatIsFixed) {
                      .structure = truth.structure,
                      .sieve = true,
                      .absorption_tables = AbsorptionTables::baranoski};
-  request.fixed = {{"chlorophylla", truth.chlorophyll_a}, {"chlorophyllb", truth.chlorophyll_b}, {"palisadeaspect", 2}};
+  request.fixed = {{"chlorophylla", truth.number("chlorophylla")},
+                   {"chlorophyllb", truth.number("chlorophyllb")},
+                   {"palisadeaspect", 2}};
   const FitResult result = fit_leaf(request, ThreadPool(2));
-  EXPECT_EQ(result.params.chlorophyll_a, truth.chlorophyll_a);
-  EXPECT_EQ(result.params.chlorophyll_b, truth.chlorophyll_b);
+  EXPECT_EQ(result.params.number("chlorophylla"), truth.number("chlorophylla"));
+  EXPECT_EQ(result.params.number("chlorophyllb"), truth.number("chlorophyllb"));
   EXPECT_EQ(result.params.palisade_aspect, 2);
   EXPECT_EQ(std::ranges::count(result.numbers, true, &FittedNumber::is_fixed), 2);
   EXPECT_LT(result.rmse, 1e-3);
@@ -183,9 +185,10 @@ TEST(Fit, NoPigmentStaysAtTheEndOfItsRange) {
   TissueParams truth = find_specimen("soybean")->params;
   truth.absorption_tables = AbsorptionTables::prospect;
   truth.sieve_and_detour = false, truth.thickness_m = 352.9e-6;
-  truth.chlorophyll_a = 2.726, truth.chlorophyll_b = 0.909, truth.carotenoids = 0.4091, truth.anthocyanins = 0.0673;
-  truth.protein = truth.cellulose = truth.lignin = 0;
-  truth.dry_matter = 355.8, truth.other_absorption = 191.4;
+  truth.number("chlorophylla") = 2.726, truth.number("chlorophyllb") = 0.909, truth.number("carotenoids") = 0.4091,
+  truth.number("anthocyanins") = 0.0673;
+  truth.number("protein") = truth.number("cellulose") = truth.number("lignin") = 0;
+  truth.number("drymatter") = 355.8, truth.number("otherabsorption") = 191.4;
   truth.epidermis_aspect = 3, truth.spongy_aspect = 1, truth.palisade_aspect = 10;
   truth.spongy_share = 0.0386, truth.cuticle_refractivity = 1.117;
   FitRequest request{.measurements = spectra_of(truth, {8}, 10)};
@@ -212,9 +215,10 @@ TEST(Fit, ErrorsAreThoseOfTheNoise) {
     EXPECT_NEAR(result.rmse, kNoise, 0.2 * kNoise);
     for (const FittedContent& c : result.contents) {
       double expected = 0;
-      if (c.name == "chlorophyll") expected = area_content(truth, truth.chlorophyll_a + truth.chlorophyll_b);
+      if (c.name == "chlorophyll")
+        expected = area_content(truth, truth.number("chlorophylla") + truth.number("chlorophyllb"));
       if (c.name == "water") expected = area_content(truth, kWaterConcentration);
-      if (c.name == "drymatter") expected = area_content(truth, truth.dry_matter);
+      if (c.name == "drymatter") expected = area_content(truth, truth.number("drymatter"));
       if (expected == 0) continue;
       const double z = std::log(c.kg_per_m2 / expected) / c.relative_error;
       EXPECT_LT(std::abs(z), 4) << c.name;

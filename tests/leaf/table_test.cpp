@@ -217,7 +217,7 @@ TEST_F(TableCache, IsReadWhereItStands) {
 TEST_F(TableCache, KeepsTablesOfDifferentRequestsApart) {
   const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
   std::vector<TableRequest> others(6, request);
-  others[0].params.lignin += 1e-9;
+  others[0].params.number("lignin") += 1e-9;
   others[1].params.sieve_and_detour = true;
   others[2].wavelengths_nm[1] += 1;
   others[3].rays = 11;

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <numbers>
+#include <set>
 
 #include "core/log.h"
 #include "leaf/solve/solver.h"
@@ -24,8 +25,8 @@ const ParsedParam kSolve = words("tablemethod", {"solve"});
 TEST(LeafMaterials, ShareTheParametersOfTheLeaf) {
   for (const char* name : {"leaf", "abm", "leaf_simplified", "leaf_solved", "leaf_lambert"}) {
     const auto params = material_info(name).params;
-    ASSERT_GE(params.size(), kLeafParams.size());
-    for (size_t i = 0; i < kLeafParams.size(); ++i) EXPECT_EQ(params[i].name, kLeafParams[i].name) << name;
+    ASSERT_GE(params.size(), leaf_params().size());
+    for (size_t i = 0; i < leaf_params().size(); ++i) EXPECT_EQ(params[i].name, leaf_params()[i].name) << name;
   }
 }
 
@@ -64,8 +65,8 @@ TEST(LeafMaterials, TakeFromTheSpecimenWhatIsNotGiven) {
   EXPECT_EQ(read({}), leaf::find_specimen("soybean")->params);
   EXPECT_EQ(read({words("specimen", {"maize"})}), leaf::find_specimen("maize")->params);
   leaf::TissueParams changed = leaf::find_specimen("maize")->params;
-  changed.lignin = 3;
-  changed.other_absorption = 50;
+  changed.number("lignin") = 3;
+  changed.number("otherabsorption") = 50;
   changed.sieve_and_detour = true;
   EXPECT_EQ(read({words("specimen", {"maize"}), number("float", "lignin", {3}),
                   number("float", "otherabsorption", {50}), flag("sieve", true)}),
@@ -79,7 +80,7 @@ TEST(LeafParams, KnowsWhatTexturesVary) {
   };
   EXPECT_TRUE(leaf({}).depth().is_constant());
   EXPECT_TRUE(leaf({texture("chlorophylla", {"2:2"})}).depth().is_constant());
-  EXPECT_EQ(leaf({texture("chlorophylla", {"2:2"})}).tissue().chlorophyll_a, 2);
+  EXPECT_EQ(leaf({texture("chlorophylla", {"2:2"})}).tissue().number("chlorophylla"), 2);
   EXPECT_FALSE(leaf({texture("chlorophylla", {"1:2"})}).depth().is_constant());
   EXPECT_EQ(leaf({texture("spongyaspect", {"1:2"})}).cuticle_aspect(), nullptr);
   EXPECT_NE(leaf({texture("spongyaspect", {"1:2"})}).spongy_aspect(), nullptr);
@@ -288,21 +289,36 @@ TEST(LeafSimplified, SharesAFileWithThoseOfItsWavelengthsAlone) {
       "leaf_simplified", {words("tablefile", {folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n" + rows)})});
 }
 
+/// A file replaces all of the tissue: every parameter of it is named, and none of the surface and the direction.
 TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const TestFolder folder("leaf_table");
   const std::string path = folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,551,.04,.1,.2\n");
-  const ParsedParam thickness = number("float", "thickness", {1e-4});
   const MaterialInfo& info = material_info("leaf_simplified");
-  Resolver resolver;
-  const auto material = info.make(Params(info, {"", {}, {words("tablefile", {path}), thickness}}, resolver));
   const auto strategy =
       testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
   ThreadPool pool(1);
   const ConsoleLog log;
-  ::testing::internal::CaptureStderr();
-  material->prepare({*strategy, pool, log, {}});
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              HasSubstr("warning: \"thickness\" has no effect with \"tablefile\""));
+  std::set<std::string_view> named;
+  for (const Param& p : leaf_params()) {
+    if (p.name.starts_with("pigment")) continue;  // one needs the other
+    const std::string name(p.name);
+    ParsedParam given = number("float", name, {p.range.max});
+    if (p.kind == ParamKind::boolean) given = flag(name, true);
+    if (p.kind == ParamKind::string) given = words(name, {std::string(p.choices.back())});
+    Resolver resolver;
+    const auto material = info.make(Params(info, {"", {}, {words("tablefile", {path}), given}}, resolver));
+    ::testing::internal::CaptureStderr();
+    material->prepare({*strategy, pool, log, {}});
+    if (::testing::internal::GetCapturedStderr().find(
+            fmt::format("warning: \"{}\" has no effect with \"tablefile\"", name)) != std::string::npos)
+      named.insert(p.name);
+  }
+  std::set<std::string_view> expected{"absorption", "sieve"};
+  for (const leaf::LeafNumber& n : leaf::leaf_parameters()) expected.insert(n.name);
+  expected.erase("cuticleaspect");
+  EXPECT_EQ(named, expected);
+  for (const char* name : {"anthocyanins", "brownpigments", "drymatter", "spongyshare", "cuticlerefractivity"})
+    EXPECT_TRUE(expected.contains(name));
 }
 
 /// The tables of a scene, by what they say of themselves.

@@ -14,26 +14,16 @@ using leaf::TissueParams;
 using test::words;
 using testing::number;
 
-struct Number {
-  double TissueParams::*member;
-  std::string_view name;
-};
-constexpr Number kNumbers[] = {
-    {&TissueParams::thickness_m, "thickness"},        {&TissueParams::mesophyll_fraction, "mesophyllfraction"},
-    {&TissueParams::chlorophyll_a, "chlorophylla"},   {&TissueParams::chlorophyll_b, "chlorophyllb"},
-    {&TissueParams::carotenoids, "carotenoids"},      {&TissueParams::protein, "protein"},
-    {&TissueParams::cellulose, "cellulose"},          {&TissueParams::lignin, "lignin"},
-    {&TissueParams::anthocyanins, "anthocyanins"},    {&TissueParams::brown_pigments, "brownpigments"},
-    {&TissueParams::dry_matter, "drymatter"},         {&TissueParams::other_absorption, "otherabsorption"},
-    {&TissueParams::spongy_share, "spongyshare"},     {&TissueParams::cuticle_refractivity, "cuticlerefractivity"},
-    {&TissueParams::cuticle_aspect, "cuticleaspect"}, {&TissueParams::epidermis_aspect, "epidermisaspect"},
-    {&TissueParams::spongy_aspect, "spongyaspect"},   {&TissueParams::palisade_aspect, "palisadeaspect"},
-};
+using Number = const leaf::LeafNumber*;
 
-const Number& known(std::string_view name) { return *std::ranges::find(kNumbers, name, &Number::name); }
+Number known(std::string_view name) { return leaf::find_leaf_number(name); }
 
-const Param& declared(std::string_view name) {
-  return *std::ranges::find_if(kLeafParams, [&](const Param& p) { return p.name == name; });
+/// In the order of the materials' parameters.
+std::vector<Number> all_numbers() {
+  std::vector<Number> numbers;
+  for (const Param& p : leaf_params())
+    if (known(p.name)) numbers.push_back(known(p.name));
+  return numbers;
 }
 
 /// Lobes of exponent 0 have an edge; those of 100 need more cells than the limit (docs/leaf_models.md).
@@ -80,14 +70,14 @@ double telling_nm(std::string_view name) {
   return is_aspect(name) ? 800 : 551;
 }
 
-std::string value_text(const Param& p, double value) {
+std::string value_text(const leaf::LeafNumber& p, double value) {
   return fmt::format("{} {:g}{}{}", p.name, value, p.unit.empty() ? "" : " ", p.unit);
 }
 
-void add_value(Theme& theme, const Number& n, double value, Bounds bounds = {}) {
+void add_value(Theme& theme, Number n, double value, Bounds bounds = {}) {
   TissueParams params = find_specimen("soybean")->params;
-  params.*n.member = value;
-  add_leaf(theme, value_text(declared(n.name), value), params, telling_nm(n.name), bounds);
+  n->of(params) = value;
+  add_leaf(theme, value_text(*n, value), params, telling_nm(n->name), bounds);
 }
 
 void add_aspects(Theme& theme, std::string_view specimen, double cuticle, double cells, Bounds bounds) {
@@ -109,9 +99,9 @@ void add_refusal(Theme& theme, std::string_view name, double value, const std::s
 /// Each parameter in turn: the cell has the last message, or the first unexpected one.
 Cell refuses_all(std::string_view material, double value, const std::string& part) {
   Cell cell;
-  for (const Number& n : kNumbers)
+  for (const Number n : all_numbers())
     if (!cell.is_surprise)
-      cell = refusal(part, [&] { Specimen(material, {number("float", std::string(n.name), {value})}, 551); });
+      cell = refusal(part, [&] { Specimen(material, {number("float", std::string(n->name), {value})}, 551); });
   return cell;
 }
 
@@ -131,7 +121,7 @@ void add_texture(Theme& theme) {
   for (const auto& [method, material] : kLeafMaterials) row.add(method, give_to(material));
 }
 
-std::string range_text(const Param& p) {
+std::string range_text(const leaf::LeafNumber& p) {
   return fmt::format("outside its range {} to {}{}{}", p.range.min, p.range.max, p.unit.empty() ? "" : " ", p.unit);
 }
 
@@ -168,10 +158,10 @@ Theme ends_of_ranges() {
       "parameter affects: 551 nm for pigments, 2100 nm for fibres, 800 nm for aspect ratios. All other parameters "
       "are those of soybean, or of maize if the case names it. pi f is compared if the parameter changes its shape "
       "and a solution with twice the nodes takes only a few seconds."};
-  for (const Number& n : kNumbers) {
-    if (is_aspect(n.name)) continue;
-    const Interval range = declared(n.name).range;
-    const Bounds bounds{.f = shapes_f(n.name) ? kModesTolerance : 0};
+  for (const Number n : all_numbers()) {
+    if (is_aspect(n->name)) continue;
+    const Interval range = n->range;
+    const Bounds bounds{.f = shapes_f(n->name) ? kModesTolerance : 0};
     add_value(theme, n, range.min, bounds);
     if (range.min == 0) add_value(theme, n, 1e-12);
     add_value(theme, n, range.max, bounds);
@@ -180,9 +170,9 @@ Theme ends_of_ranges() {
   for (const double cuticle : {0.0, 0.2, 5.0, 1000.0})
     add_value(theme, known("cuticleaspect"), cuticle, {.f = kModesTolerance});
   const Bounds edge{5e-4, 2e-3, kEdgeOfF}, narrow{1e-5, 2e-3}, narrow_with_f{1e-5, 2e-3, kNarrowestF};
-  for (const Number& n : {known("epidermisaspect"), known("spongyaspect"), known("palisadeaspect")}) {
+  for (const Number n : {known("epidermisaspect"), known("spongyaspect"), known("palisadeaspect")}) {
     add_value(theme, n, 0, edge);
-    add_value(theme, n, 100, n.name == "epidermisaspect" ? narrow_with_f : narrow);
+    add_value(theme, n, 100, n->name == "epidermisaspect" ? narrow_with_f : narrow);
   }
   for (const char* specimen : {"soybean", "maize"}) {
     add_aspects(theme, specimen, 0, 0, {5e-4, 1e-3, kEdgeOfF});
@@ -195,10 +185,9 @@ Theme ends_of_ranges() {
 Theme outside_ranges() {
   Theme theme{"Parameters outside their ranges",
               "Every leaf material with values just outside each end of a range, and with NaN and infinity."};
-  for (const Number& n : kNumbers) {
-    const Param& p = declared(n.name);
-    add_refusal(theme, n.name, just_below(p.range), range_text(p));
-    add_refusal(theme, n.name, just_above(p.range), range_text(p));
+  for (const Number n : all_numbers()) {
+    add_refusal(theme, n->name, just_below(n->range), range_text(*n));
+    add_refusal(theme, n->name, just_above(n->range), range_text(*n));
   }
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), kInfinite, -kInfinite})

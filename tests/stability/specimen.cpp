@@ -98,28 +98,13 @@ Cell looked_up_in_walked(Specimen& specimen, const Lit& lit, double bound) {
 }  // namespace
 
 Parameters words_for(const TissueParams& leaf) {
-  const auto real = [](std::string name, double value) { return number("float", std::move(name), {value}); };
-  return {words("specimen", {leaf.structure == leaf::Structure::bifacial ? "soybean" : "maize"}),
-          flag("sieve", leaf.sieve_and_detour),
-          real("thickness", leaf.thickness_m),
-          real("mesophyllfraction", leaf.mesophyll_fraction),
-          real("chlorophylla", leaf.chlorophyll_a),
-          real("chlorophyllb", leaf.chlorophyll_b),
-          real("carotenoids", leaf.carotenoids),
-          real("protein", leaf.protein),
-          real("cellulose", leaf.cellulose),
-          real("lignin", leaf.lignin),
-          real("anthocyanins", leaf.anthocyanins),
-          real("brownpigments", leaf.brown_pigments),
-          real("drymatter", leaf.dry_matter),
-          real("otherabsorption", leaf.other_absorption),
-          words("absorption", {leaf.absorption_tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski"}),
-          real("spongyshare", leaf.spongy_share),
-          real("cuticlerefractivity", leaf.cuticle_refractivity),
-          real("cuticleaspect", leaf.cuticle_aspect),
-          real("epidermisaspect", leaf.epidermis_aspect),
-          real("spongyaspect", leaf.spongy_aspect),
-          real("palisadeaspect", leaf.palisade_aspect)};
+  Parameters all{
+      words("specimen", {leaf.structure == leaf::Structure::bifacial ? "soybean" : "maize"}),
+      flag("sieve", leaf.sieve_and_detour),
+      words("absorption", {leaf.absorption_tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski"})};
+  for (const leaf::LeafNumber& n : leaf::leaf_parameters())
+    all.push_back(number("float", std::string(n.name), {n.of(leaf)}));
+  return all;
 }
 
 Specimen::Specimen(std::string_view material, Parameters params, double lambda_nm) : lambda_nm_(lambda_nm) {

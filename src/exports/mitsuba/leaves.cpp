@@ -6,16 +6,12 @@
 #include "exports/mitsuba/materials.h"
 #include "exports/mitsuba/textures.h"
 #include "instruments/beam.h"
+#include "leaf/tissue/leaf_numbers.h"
 
 namespace frond::mitsuba {
 namespace {
 
-// Parameters of frond_leaf, by type; those of the first list may be images (python/frond/mitsuba.py).
-constexpr std::array kContents{"thickness",    "mesophyllfraction", "chlorophylla", "chlorophyllb",
-                               "carotenoids",  "protein",           "cellulose",    "lignin",
-                               "anthocyanins", "brownpigments",     "drymatter",    "otherabsorption"};
-constexpr std::array kNumbers{"cuticleaspect",  "epidermisaspect", "spongyaspect",
-                              "palisadeaspect", "spongyshare",     "cuticlerefractivity"};
+// Parameters of frond_leaf beside the numbers of a leaf.
 constexpr std::array kWords{"specimen", "absorption", "incident"};
 constexpr std::array kRefused{"pigments", "pigmentconcentrations", "tablefile", "tableleaf"};
 
@@ -56,19 +52,22 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
     if (contains(kWords, name)) xml.text(name, p.string(name));
     if (name == "sieve") xml.flag(name, p.boolean(name));
     if (name == "tolerance") xml.number(name, p.real(name));
-    if (name == "spongyshare" || name == "cuticlerefractivity") {
-      xml.number(name, p.real(name));
-    } else if (contains(kContents, name) || contains(kNumbers, name)) {
-      FloatValue value = float_value(context, plugin, p, name);
-      if (value.image && contains(kNumbers, name)) {
-        context.lacks("textures", given.where,
-                      fmt::format("\"{}\" from an image has no equivalent in Mitsuba's frond_leaf", name),
-                      "its mean stands for it");
-        value = {mean_of(*value.map)};
-      }
-      has_image |= value.image != nullptr;
-      write_value(context, xml, name, value);
+    const leaf::LeafNumber* number = leaf::find_leaf_number(name);
+    if (!number) continue;
+    FloatValue value;
+    if (number->takes_texture)
+      value = float_value(context, plugin, p, name);
+    else
+      value.constant = p.real(name);
+    // Images change the optical depth alone (python/frond/mitsuba.py).
+    if (value.image && !number->acts_by_depth()) {
+      context.lacks("textures", given.where,
+                    fmt::format("\"{}\" from an image has no equivalent in Mitsuba's frond_leaf", name),
+                    "its mean stands for it");
+      value = {mean_of(*value.map)};
     }
+    has_image |= value.image != nullptr;
+    write_value(context, xml, name, value);
   }
   return has_image;
 }

@@ -1,8 +1,5 @@
 #include "leaf/fit/bare_leaf.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "leaf/tissue/specimens.h"
 
 namespace frond::leaf {
@@ -10,8 +7,7 @@ namespace {
 
 const TissueModel& plain_model(Structure structure) {
   static const auto make = [](Structure of) {
-    const auto* specimen = std::ranges::find(kSpecimens, of, [](const Specimen& s) { return s.params.structure; });
-    TissueParams params = specimen->params;
+    TissueParams params = specimen_of(of).params;
     params.cuticle_refractivity = 1;
     return TissueModel(params);
   };

@@ -28,21 +28,6 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// A constituent whose content per area is reported.
-struct Content {
-  std::string_view name;
-  double (*of)(const TissueParams&);  ///< kg/m^2
-};
-constexpr Content kContents[] = {
-    {"chlorophyll", [](const TissueParams& p) { return area_content(p, p.chlorophyll_a + p.chlorophyll_b); }},
-    {"carotenoids", [](const TissueParams& p) { return area_content(p, p.carotenoids); }},
-    {"anthocyanins", [](const TissueParams& p) { return area_content(p, p.anthocyanins); }},
-    {"brownpigments", [](const TissueParams& p) { return area_content(p, p.brown_pigments); }},
-    {"water", [](const TissueParams& p) { return area_content(p, kWaterConcentration); }},
-    {"drymatter",
-     [](const TissueParams& p) { return area_content(p, p.dry_matter + p.protein + p.cellulose + p.lignin); }},
-};
-
 /// Sets errors, correlations, parameters and contents of a result that has its `params` and `fitted`.
 void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& found, FitResult& result) {
   const LeafSpace& space = *found.space;
@@ -81,31 +66,31 @@ void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& foun
     for (Index b = 0; b < n; ++b)
       result.correlations[static_cast<size_t>(a)][static_cast<size_t>(b)] =
           covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
-  for (const FitVariable& v : kFitVariables) {
-    if (!space.has(v)) continue;
-    FittedNumber number{&v, result.params.*v.number};
-    const auto place = std::ranges::find(space.free(), &v);
+  for (const LeafNumber* v : space.numbers()) {
+    FittedNumber number{v, v->of(result.params)};
+    const auto place = std::ranges::find(space.free(), v);
     number.is_fixed = place == space.free().end();
     if (!number.is_fixed) {
       const auto i = static_cast<Index>(place - space.free().begin());
       number.relative_error = std::sqrt(covariance(i, i));
       constexpr double kNear = 1.02;
-      number.is_at_bound = number.value < v.range.min * kNear || number.value > v.range.max / kNear;
+      number.is_at_bound = number.value < v->fit_range.min * kNear || number.value > v->fit_range.max / kNear;
     }
     result.numbers.push_back(number);
   }
   // Contents per area, with the errors of linearised products.
   constexpr double kStep = 1e-4;
-  for (const Content& content : kContents) {
-    const double value = content.of(result.params);
+  for (const AreaContent& content : area_contents()) {
+    const double value = area_content(result.params, content);
     if (!(value > 0)) continue;
     VectorXd slope(n);
     for (Index i = 0; i < n; ++i) {
-      const FitVariable& v = space.variable(i);
-      const TissueParams moved = space.with(result.params, v, result.params.*v.number * std::exp(kStep));
-      slope[i] = std::log(content.of(moved) / value) / kStep;
+      const LeafNumber& v = space.variable(i);
+      const TissueParams moved = space.with(result.params, v, v.of(result.params) * std::exp(kStep));
+      slope[i] = std::log(area_content(moved, content) / value) / kStep;
     }
-    result.contents.push_back({content.name, value, std::sqrt(std::max(0.0, slope.dot(covariance * slope)))});
+    result.contents.push_back(
+        {content.name, content.unit, value, std::sqrt(std::max(0.0, slope.dot(covariance * slope)))});
   }
 }
 

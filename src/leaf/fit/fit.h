@@ -19,43 +19,13 @@ struct LeafMeasurement {
   std::optional<double> r, t;  ///< shares of 1; at least one of the two
 };
 
-/// A parameter of a leaf that `fit_leaf` can estimate from measurements.
-struct FitVariable {
-  std::string_view name;  ///< a leaf material's parameter
-  /// The member of TissueParams to fit, and the range to search; units as in TissueParams.
-  double TissueParams::*number;
-  Interval range;
-  /// Start of the search where the specimen has none of it.
-  double little = 0;
-  bool is_structure = false;  ///< shapes lobes or surfaces; the others act through the optical depth
-  std::optional<AbsorptionTables> only_with = {};  ///< fitted with these tables alone
-};
+/// Parameters that `fit_leaf` can estimate. A constituent that follows another one is fitted with it, by the specimen's
+/// ratio, since both absorb alike.
+inline auto fit_variables() { return kLeafNumbers | std::views::filter(&LeafNumber::is_fitted); }
 
-/// Chlorophyll a is fitted for both chlorophylls, which absorb alike here: b follows by the specimen's ratio. Likewise
-/// lignin follows cellulose. `mesophyllfraction` is kept at the specimen's value, since it acts only through its
-/// product with the thickness. The cuticle's aspect ratio is not fitted: it shapes reflected light and absorbs nothing.
-inline constexpr FitVariable kFitVariables[] = {
-    {"thickness", &TissueParams::thickness_m, {2e-6, 1e-2}},
-    {"chlorophylla", &TissueParams::chlorophyll_a, {1e-3, 100}},
-    {"carotenoids", &TissueParams::carotenoids, {1e-3, 100}},
-    {"anthocyanins", &TissueParams::anthocyanins, {1e-3, 100}, 0.05, false, AbsorptionTables::prospect},
-    {"brownpigments", &TissueParams::brown_pigments, {1, 1e5}, 20, false, AbsorptionTables::prospect},
-    {"protein", &TissueParams::protein, {0.1, 1500}, 30, false, AbsorptionTables::baranoski},
-    {"cellulose", &TissueParams::cellulose, {0.1, 1500}, 30, false, AbsorptionTables::baranoski},
-    {"drymatter", &TissueParams::dry_matter, {0.1, 1500}, 100, false, AbsorptionTables::prospect},
-    {"otherabsorption", &TissueParams::other_absorption, {1, 1e4}, 30},
-    {"epidermisaspect", &TissueParams::epidermis_aspect, {0.7, 20}, 1, true},
-    {"spongyaspect", &TissueParams::spongy_aspect, {0.7, 20}, 1, true},
-    {"palisadeaspect", &TissueParams::palisade_aspect, {0.7, 20}, 1, true},  // of bifacial leaves
-    {"spongyshare", &TissueParams::spongy_share, {1e-4, 0.95}, 0.05, true},  // of bifacial leaves
-    /// Index of the cuticle at 550 nm from 1.10 to 1.66.
-    {"cuticlerefractivity", &TissueParams::cuticle_refractivity, {0.2, 1.3}, 1, true},
-};
-
-/// Whether leaves of this structure have the parameter.
-inline bool has_variable(Structure structure, const FitVariable& v) {
-  return structure == Structure::bifacial ||
-         (v.number != &TissueParams::palisade_aspect && v.number != &TissueParams::spongy_share);
+/// Whether leaves of this structure have the number.
+inline bool has_number(Structure structure, const LeafNumber& n) {
+  return structure == Structure::bifacial || !n.only_bifacial;
 }
 
 /// Input of `fit_leaf`.
@@ -74,7 +44,7 @@ struct FitRequest {
   AbsorptionTables absorption_tables = AbsorptionTables::prospect;
   /// A parameter that is kept at a given value.
   struct Fixed {
-    /// Of kFitVariables, or mesophyllfraction, chlorophyllb, lignin; per area also chlorophyll (a and b), water.
+    /// Of a parameter that is no LeafAction::surface, or, per area, of an area content.
     std::string name;
     double value;
     bool per_area = false;  ///< `value` is the content, kg/m^2 (leaf/tissue/area_content.h)
@@ -86,7 +56,7 @@ struct FitRequest {
 
 /// Estimate of one parameter.
 struct FittedNumber {
-  const FitVariable* variable;
+  const LeafNumber* variable;
   double value;
   double relative_error = 0;  ///< standard error of its logarithm; 0 if fixed
   bool is_fixed = false;
@@ -99,6 +69,7 @@ struct FittedNumber {
 /// Content of a constituent per leaf area.
 struct FittedContent {
   std::string_view name;
+  AreaUnit unit;  ///< for reports
   double kg_per_m2;
   double relative_error = 0;  ///< standard error of its logarithm; 0 if fixed
 };
@@ -124,7 +95,7 @@ struct FitResult {
     double r, t;
     bool is_outlier;  ///< its residual is too large for the others' spread: it has less weight
   };
-  std::vector<FittedContent> contents;   ///< per leaf area: chlorophyll, carotenoids, ..., water, drymatter
+  std::vector<FittedContent> contents;   ///< per leaf area, those above 0
   std::vector<MisfitBand> misfits;       ///< see misfit_bands
   std::vector<Fitted> fitted;            ///< [measurement], solved with the fitted parameters
   double rmse = 0;                       ///< root mean square of the residuals

@@ -48,7 +48,7 @@ std::vector<Pair> FitRows::filled(const std::vector<size_t>& chosen, const std::
                                   const OpticsSurface& surface, const Constituents& amounts) const {
   std::vector<Pair> result;
   for (const FitRow& row : rows)
-    result.push_back(surface.sum(row.angle, row.weights, OpticsSurface::terms((amounts * row.specific).sum()).value));
+    result.push_back(surface.sum(row.angle, row.weights, OpticsSurface::terms(depth_of(amounts, row.specific)).value));
   std::vector<Pair> difference;
   for (size_t i = 0; i < chosen.size(); ++i)
     difference.push_back({solved[i].r - result[chosen[i]].r, solved[i].t - result[chosen[i]].t});
@@ -77,7 +77,7 @@ FitProblem::FitProblem(const FitRequest& request, const LeafSpace& space, const 
       rows_(rows),
       weight_(static_cast<double>(request.measurements.size()) / static_cast<double>(rows.rows.size())) {
   for (Index i = 0; i < space.count(); ++i)
-    if (space.variable(i).is_structure) structural_.push_back(i);
+    if (space.variable(i).is_structure()) structural_.push_back(i);
 }
 
 OpticsSurface FitProblem::surface(const SurfaceExpansion& expansion, const VectorXd& logs) const {
@@ -93,7 +93,7 @@ std::vector<Pair> FitProblem::values(const SurfaceExpansion& expansion, const Ve
   std::vector<Pair> result;
   result.reserve(rows_.rows.size());
   for (const FitRow& row : rows_.rows)
-    result.push_back(here.sum(row.angle, row.weights, OpticsSurface::terms((amounts * row.specific).sum()).value));
+    result.push_back(here.sum(row.angle, row.weights, OpticsSurface::terms(depth_of(amounts, row.specific)).value));
   return result;
 }
 
@@ -122,18 +122,17 @@ void FitProblem::for_each_row(const SurfaceExpansion& expansion, const VectorXd&
   const Constituents amounts = amounts_of(p);
   const Index count = space_.count();
   // Derivatives of the amounts by the parameters of the chemistry.
-  Eigen::Matrix<double, Constituents::RowsAtCompileTime, Eigen::Dynamic> changes(amounts.size(), count);
-  changes.setZero();
+  MatrixXd changes = MatrixXd::Zero(amounts.size(), count);
   for (Index i = 0; i < count; ++i) {
-    const FitVariable& variable = space_.variable(i);
-    if (variable.is_structure) continue;
-    const TissueParams moved = space_.with(p, variable, p.*variable.number * std::exp(kSmall));
+    const LeafNumber& variable = space_.variable(i);
+    if (variable.is_structure()) continue;
+    const TissueParams moved = space_.with(p, variable, variable.of(p) * std::exp(kSmall));
     changes.col(i) = (amounts_of(moved) - amounts) / kSmall;
   }
   VectorXd by_r(count), by_t(count), by_depth(count);
   for (size_t i = 0; i < rows_.rows.size(); ++i) {
     const FitRow& row = rows_.rows[i];
-    const OpticsSurface::Terms terms = OpticsSurface::terms((amounts * row.specific).sum());
+    const OpticsSurface::Terms terms = OpticsSurface::terms(depth_of(amounts, row.specific));
     Pair value = here.sum(row.angle, row.weights, terms.value);
     const Pair slope = here.sum(row.angle, row.weights, terms.slope);
     if (!expansion.corrections.empty()) value.r += expansion.corrections[i].r, value.t += expansion.corrections[i].t;
@@ -184,7 +183,7 @@ double FitProblem::minimise(const SurfaceExpansion& expansion, const Effort& eff
   VectorXd low(count), high(count);
   for (Index i = 0; i < count; ++i) {
     low[i] = space_.low(i), high[i] = space_.high(i);
-    if (!space_.variable(i).is_structure) continue;
+    if (!space_.variable(i).is_structure()) continue;
     const double at = expansion.at[i], radius = effort.structure_is_free ? effort.radius : 0;
     low[i] = std::max(low[i], at - radius), high[i] = std::min(high[i], at + radius);
   }

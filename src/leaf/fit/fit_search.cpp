@@ -28,9 +28,9 @@ FitCache::~FitCache() = default;
 namespace {
 
 /// Structures at which a search starts.
-struct Start {
-  double epidermis, spongy, palisade, spongy_share;
-};
+using Start = std::array<double, 4>;
+constexpr double TissueParams::*kStarted[] = {&TissueParams::epidermis_aspect, &TissueParams::spongy_aspect,
+                                              &TissueParams::palisade_aspect, &TissueParams::spongy_share};
 constexpr Start kStarts[] = {{5, 5, 1, 0.05}, {2, 2, 1, 0.3}, {12, 8, 4, 0.15}, {3, 5, 2, 0.2}};
 
 /// Rows in the search, before its end.
@@ -48,12 +48,9 @@ struct Candidate {
 
 TissueParams started(const LeafSpace& space, const Start& start) {
   TissueParams p = space.origin();
-  for (const FitVariable* v : space.free()) {
-    if (v->number == &TissueParams::epidermis_aspect) p.epidermis_aspect = start.epidermis;
-    if (v->number == &TissueParams::spongy_aspect) p.spongy_aspect = start.spongy;
-    if (v->number == &TissueParams::palisade_aspect) p.palisade_aspect = start.palisade;
-    if (v->number == &TissueParams::spongy_share) p.spongy_share = start.spongy_share;
-  }
+  for (const LeafNumber* v : space.free())
+    for (size_t i = 0; i < start.size(); ++i)
+      if (v->member == kStarted[i]) v->of(p) = start[i];
   return p;
 }
 
@@ -67,13 +64,9 @@ class Surfaces {
   OpticsSurface fine(const TissueParams& p) { return {p, theta_deg_, kFitNodes, means_}; }
   /// `search` for a structure that many searches need. The result is the same whether it was known or not.
   std::shared_ptr<const OpticsSurface> shared(const TissueParams& p) {
-    std::vector<double> key{static_cast<double>(p.structure),
-                            p.sieve_and_detour ? 1.0 : 0.0,
-                            p.epidermis_aspect,
-                            p.spongy_aspect,
-                            p.palisade_aspect,
-                            p.spongy_share,
-                            p.cuticle_refractivity};
+    std::vector<double> key{static_cast<double>(p.structure), p.sieve_and_detour ? 1.0 : 0.0};
+    for (const LeafNumber& n : kLeafNumbers)
+      if (n.is_structure()) key.push_back(n.of(p));
     key.insert(key.end(), theta_deg_.begin(), theta_deg_.end());
     {
       const std::lock_guard lock(cache_.mutex);
@@ -91,7 +84,7 @@ class Surfaces {
     const OpticsSurface base = solve(space.at(logs));
     std::vector<OpticsSurface> result;
     for (Index i = 0; i < space.count(); ++i) {
-      if (!space.variable(i).is_structure) continue;
+      if (!space.variable(i).is_structure()) continue;
       VectorXd moved = logs;
       const double change = logs[i] + step <= space.high(i) ? step : -step;
       moved[i] += change;
@@ -268,7 +261,7 @@ std::vector<Pair> solve_rows(const FitRows& rows, const TissueParams& params, co
     const size_t first = static_cast<size_t>(chunk) * kChunk, end = std::min(first + kChunk, chosen.size());
     for (size_t i = first; i < end; ++i) {
       const FitRow& row = rows.rows[chosen[i]];
-      const Tissue tissue = leaf.at(row.lambda_nm, (amounts * row.specific).sum());
+      const Tissue tissue = leaf.at(row.lambda_nm, depth_of(amounts, row.specific));
       const Shares s = solve_depths({&tissue, 1}, {&rows.theta_deg[row.angle], 1}, kFitNodes, means)[0][0];
       solved[i] = {s.surface + s.subsurface, s.transmitted};
     }

@@ -13,48 +13,40 @@
 /// Parameters of a fit. Included by .cpp files of this folder alone, which keeps Eigen out of other modules.
 namespace frond::leaf {
 
-/// A parameter that follows a fitted one in a constant ratio.
-struct Companion {
-  std::string_view name;
-  double TissueParams::*number;
-  double TissueParams::*leader;
-};
-inline constexpr Companion kCompanions[] = {
-    {"chlorophyllb", &TissueParams::chlorophyll_b, &TissueParams::chlorophyll_a},
-    {"lignin", &TissueParams::lignin, &TissueParams::cellulose},
-};
-
-inline const Specimen& specimen_of(Structure structure) {
-  return *std::ranges::find(kSpecimens, structure, [](const Specimen& s) { return s.params.structure; });
-}
-
-/// Amounts per leaf area of all that absorbs, and what one unit of each adds to the optical depth at one wavelength:
-/// the depth is their scalar product. The first is the water.
-using Constituents = Eigen::Array<double, 9, 1>;
-inline constexpr double TissueParams::*kConcentrations[] = {
-    &TissueParams::chlorophyll_a, &TissueParams::carotenoids,     &TissueParams::protein,
-    &TissueParams::cellulose,     &TissueParams::anthocyanins,    &TissueParams::brown_pigments,
-    &TissueParams::dry_matter,    &TissueParams::other_absorption};
+/// Amounts per leaf area of all that absorbs, and what one unit of each adds to the optical depth at one wavelength.
+/// The first is what every leaf has as much of (water), the others are the further `absorbers`.
+using Constituents = Eigen::Array<double, Eigen::Dynamic, 1, 0, kMostLeafNumbers, 1>;
 
 inline Constituents amounts_of(const TissueParams& p) {
-  Constituents amounts;
-  amounts << 1, p.chlorophyll_a + p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose + p.lignin, p.anthocyanins,
-      p.brown_pigments, p.dry_matter, p.other_absorption;
+  Constituents amounts(static_cast<Eigen::Index>(absorbers().size()));
+  amounts[0] = 1;
+  Eigen::Index i = 1;
+  for (const Absorber& a : absorbers())
+    if (a.first().is_parameter()) amounts[i++] = a.amount(p);
   return amounts * (p.thickness_m * p.mesophyll_fraction);
 }
 
 inline Constituents specific_depths(AbsorptionTables tables, double lambda_nm) {
   TissueParams of;
   of.absorption_tables = tables;
-  Constituents depths;
+  Constituents depths(static_cast<Eigen::Index>(absorbers().size()));
   depths[0] = absorption_coefficient(of, lambda_nm);
   Eigen::Index i = 1;
-  for (const auto concentration : kConcentrations) {
+  for (const Absorber& a : absorbers()) {
+    if (!a.first().is_parameter()) continue;
     TissueParams one = of;
-    one.*concentration = 1;
+    a.first().of(one) = 1;
     depths[i++] = absorption_coefficient(one, lambda_nm) - depths[0];
   }
   return depths;
+}
+
+/// Optical depth: the scalar product. The first eight terms are added as vectors.
+inline double depth_of(const Constituents& amounts, const Constituents& specific) {
+  constexpr Eigen::Index kVectors = 8;
+  double sum = (amounts.head<kVectors>() * specific.head<kVectors>()).sum();
+  for (Eigen::Index i = kVectors; i < amounts.size(); ++i) sum += amounts[i] * specific[i];
+  return sum;
 }
 
 /// One kind of leaf (structure, sieve), and its free parameters. A search varies their logarithms.
@@ -65,45 +57,35 @@ class LeafSpace {
         origin_(specimen_.params) {
     origin_.sieve_and_detour = sieve;
     origin_.absorption_tables = request.absorption_tables;
-    if (request.absorption_tables == AbsorptionTables::prospect) {
-      if (origin_.dry_matter == 0) origin_.dry_matter = origin_.protein + origin_.cellulose + origin_.lignin;
-      origin_.protein = origin_.cellulose = origin_.lignin = 0;
-    } else {
-      origin_.anthocyanins = origin_.brown_pigments = origin_.dry_matter = 0;
+    take_tables();
+    fix(request, *find_leaf_number("mesophyllfraction"));
+    for (const FitRequest::Fixed& fixed : request.fixed) fix_content(fixed);
+    for (const LeafNumber& n : fit_variables()) {
+      const bool is_fixed = std::ranges::find(given_, &n) != given_.end() || fix(request, n);
+      const bool is_of_leaf = has_number(structure, n) && (!n.only_with || *n.only_with == request.absorption_tables);
+      if (is_fixed || is_of_leaf) numbers_.push_back(&n);
+      if (is_fixed || !is_of_leaf) continue;
+      free_.push_back(&n);
+      if (n.of(origin_) == 0) n.of(origin_) = n.little;  // none has no logarithm
     }
-    fix(request, "mesophyllfraction", &TissueParams::mesophyll_fraction);
-    const bool has_water = fix_water(request);
-    const bool has_chlorophyll = fix_chlorophyll(request);
-    for (const FitVariable& v : kFitVariables) {
-      const bool is_given = (v.number == &TissueParams::thickness_m && has_water) ||
-                            (v.number == &TissueParams::chlorophyll_a && has_chlorophyll);
-      if (is_given || fix(request, v.name, v.number)) {
-        fixed_.push_back(&v);
-        continue;
-      }
-      if (!has_variable(structure, v) || (v.only_with && *v.only_with != request.absorption_tables)) continue;
-      free_.push_back(&v);
-      if (origin_.*v.number == 0) origin_.*v.number = v.little;  // none has no logarithm
-    }
-    for (const Companion& c : kCompanions) {
-      if ((c.number == &TissueParams::chlorophyll_b && has_chlorophyll) || fix(request, c.name, c.number)) continue;
-      const double leader = specimen_.params.*c.leader;
-      followers_.push_back({c.number, c.leader, leader > 0 ? specimen_.params.*c.number / leader : 0});
+    for (const LeafNumber& n : leaf_parameters()) {
+      if (n.follows.empty() || std::ranges::find(given_, &n) != given_.end() || fix(request, n)) continue;
+      const LeafNumber* leader = find_leaf_number(n.follows);
+      const double of_leader = leader->of(specimen_.params);
+      followers_.push_back({&n, leader, of_leader > 0 ? n.of(specimen_.params) / of_leader : 0});
     }
     settle(origin_);
   }
 
   const Specimen& specimen() const { return specimen_; }
   const TissueParams& origin() const { return origin_; }
-  const std::vector<const FitVariable*>& free() const { return free_; }
-  /// Whether the leaf has the variable, free or fixed.
-  bool has(const FitVariable& v) const {
-    return std::ranges::find(free_, &v) != free_.end() || std::ranges::find(fixed_, &v) != fixed_.end();
-  }
+  const std::vector<const LeafNumber*>& free() const { return free_; }
+  /// The variables that the leaf has, free or fixed.
+  const std::vector<const LeafNumber*>& numbers() const { return numbers_; }
   Eigen::Index count() const { return static_cast<Eigen::Index>(free_.size()); }
 
-  TissueParams with(TissueParams p, const FitVariable& v, double value) const {
-    p.*v.number = value;
+  TissueParams with(TissueParams p, const LeafNumber& v, double value) const {
+    v.of(p) = value;
     settle(p);
     return p;
   }
@@ -111,73 +93,86 @@ class LeafSpace {
   /// Logarithms of the free parameters, within their ranges.
   Eigen::VectorXd logs_of(const TissueParams& p) const {
     Eigen::VectorXd logs(count());
-    for (Eigen::Index i = 0; i < count(); ++i) logs[i] = std::clamp(std::log(p.*variable(i).number), low(i), high(i));
+    for (Eigen::Index i = 0; i < count(); ++i) logs[i] = std::clamp(std::log(variable(i).of(p)), low(i), high(i));
     return logs;
   }
   TissueParams at(const Eigen::VectorXd& logs) const {
     TissueParams p = origin_;
     for (Eigen::Index i = 0; i < count(); ++i) {
-      const Interval& range = variable(i).range;  // the exponential of its ends may lie beyond them
-      p.*variable(i).number = std::clamp(std::exp(logs[i]), range.min, range.max);
+      const Interval& range = variable(i).fit_range;  // the exponential of its ends may lie beyond them
+      variable(i).of(p) = std::clamp(std::exp(logs[i]), range.min, range.max);
     }
     settle(p);
     return p;
   }
   /// Ends of a parameter's range, as logarithms.
-  double low(Eigen::Index i) const { return std::log(variable(i).range.min); }
-  double high(Eigen::Index i) const { return std::log(variable(i).range.max); }
-  const FitVariable& variable(Eigen::Index i) const { return *free_[static_cast<size_t>(i)]; }
+  double low(Eigen::Index i) const { return std::log(variable(i).fit_range.min); }
+  double high(Eigen::Index i) const { return std::log(variable(i).fit_range.max); }
+  const LeafNumber& variable(Eigen::Index i) const { return *free_[static_cast<size_t>(i)]; }
 
  private:
   struct Follower {
-    double TissueParams::*number;
-    double TissueParams::*leader;
+    const LeafNumber *number, *leader;
     double ratio;
   };
-  /// A concentration that follows the thickness, because its content per area is given.
-  struct PerArea {
-    double TissueParams::*number;
-    double kg_per_m2;
-  };
+
+  /// Removes the constituents that leaves with other absorption tables have. The whole of a content takes the place of
+  /// its parts.
+  void take_tables() {
+    const TissueParams& p = specimen_.params;
+    for (const LeafNumber& n : leaf_parameters()) {
+      if (!n.only_with) continue;
+      if (*n.only_with != origin_.absorption_tables) {
+        n.of(origin_) = 0;
+      } else if (n.of(origin_) == 0 && n.name == n.content.name) {
+        for (const LeafNumber* part : parts_of(n.content)) n.of(origin_) += part->of(p);
+      }
+    }
+  }
 
   /// Sets what follows other parameters.
   void settle(TissueParams& p) const {
-    for (const PerArea& a : per_area_) p.*a.number = a.kg_per_m2 / area_content(p, 1);
-    for (const Follower& f : followers_) p.*f.number = f.ratio * p.*f.leader;
+    for (const auto& [number, content] : per_area_) number->of(p) = content / area_content(p, 1);
+    for (const Follower& f : followers_) f.number->of(p) = f.ratio * f.leader->of(p);
   }
 
   /// Returns whether the request gives the parameter, and sets it.
-  bool fix(const FitRequest& request, std::string_view name, double TissueParams::*number) {
-    const auto found = std::ranges::find(request.fixed, name, &FitRequest::Fixed::name);
+  bool fix(const FitRequest& request, const LeafNumber& number) {
+    const auto found = std::ranges::find(request.fixed, number.name, &FitRequest::Fixed::name);
     if (found == request.fixed.end()) return false;
     if (found->per_area)
-      per_area_.push_back({number, found->value});
+      per_area_.push_back({&number, found->value});
     else
-      origin_.*number = found->value;
+      number.of(origin_) = found->value;
     return true;
   }
-  /// Water per area gives the thickness.
-  bool fix_water(const FitRequest& request) {
-    const auto found = std::ranges::find(request.fixed, "water", &FitRequest::Fixed::name);
-    if (found == request.fixed.end()) return false;
-    origin_.thickness_m = found->value / (kWaterConcentration * origin_.mesophyll_fraction);
-    return true;
-  }
-  /// Chlorophyll per area is that of a and b, in the specimen's ratio.
-  bool fix_chlorophyll(const FitRequest& request) {
-    const auto found = std::ranges::find(request.fixed, "chlorophyll", &FitRequest::Fixed::name);
-    if (found == request.fixed.end()) return false;
-    const TissueParams& p = specimen_.params;
-    const double a = p.chlorophyll_a / (p.chlorophyll_a + p.chlorophyll_b);
-    per_area_.push_back({&TissueParams::chlorophyll_a, a * found->value});
-    per_area_.push_back({&TissueParams::chlorophyll_b, (1 - a) * found->value});
-    return true;
+  /// Sets what a content gives that is no parameter's: its parts, in the specimen's ratio; without any, the thickness.
+  void fix_content(const FitRequest::Fixed& fixed) {
+    const auto content = std::ranges::find(area_contents(), fixed.name, &AreaContent::name);
+    const LeafNumber* same = find_leaf_number(fixed.name);
+    if (content == area_contents().end() || (same && same->is_parameter())) return;
+    const std::vector<const LeafNumber*> parts = parts_of(*content);
+    if (parts.empty()) {
+      origin_.thickness_m = fixed.value / (content->kg_per_m3 * origin_.mesophyll_fraction);
+      given_.push_back(find_leaf_number("thickness"));
+      return;
+    }
+    double sum = 0, rest = 1;
+    for (const LeafNumber* part : parts) sum += part->of(specimen_.params);
+    for (const LeafNumber* part : parts) {
+      const double share = part == parts.back() ? rest : part->of(specimen_.params) / sum;
+      per_area_.push_back({part, share * fixed.value});
+      rest -= share;
+    }
+    given_.insert(given_.end(), parts.begin(), parts.end());
   }
 
   const Specimen& specimen_;
   TissueParams origin_;
-  std::vector<const FitVariable*> free_, fixed_;
-  std::vector<PerArea> per_area_;
+  std::vector<const LeafNumber*> free_, numbers_;
+  std::vector<const LeafNumber*> given_;  ///< by a content per area
+  /// Concentrations that follow the thickness, because their contents per area are given, kg/m^2.
+  std::vector<std::pair<const LeafNumber*, double>> per_area_;
   std::vector<Follower> followers_;
 };
 

@@ -11,7 +11,7 @@
 #include "leaf/table/cache_file.h"
 #include "leaf/table/mode_table_file.h"
 #include "leaf/table/table_cache.h"
-#include "leaf/tissue/constants.h"
+#include "leaf/tissue/leaf_numbers.h"
 #include "system/cache_limit.h"
 
 namespace frond::leaf {

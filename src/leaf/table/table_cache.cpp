@@ -2,16 +2,13 @@
 
 #include <fmt/ranges.h>
 
-#include <bit>
 #include <chrono>
 
 #include "core/log.h"
 #include "core/messages/counted.h"
-#include "core/random.h"
 #include "leaf/table/cache_file.h"
 #include "leaf/table/table_file.h"
-#include "leaf/tissue/constants.h"
-#include "leaf/tissue/prospect.h"
+#include "leaf/tissue/leaf_numbers.h"
 #include "leaf/walk/walk.h"
 #include "system/cache_limit.h"
 
@@ -29,31 +26,6 @@ std::string list_text(const std::vector<double>& values) {
       return fmt::format("{}:{}:{}", values[0], values.back(), step);
   }
   return fmt::format("{}", fmt::join(values, ","));
-}
-
-std::string describe(const TissueParams& p) {
-  std::string text = fmt::format(
-      "# structure {}, thickness {} m, mesophyll fraction {}\n"
-      "# kg/m3: chlorophyll a {}, b {}, carotenoids {}, protein {}, cellulose {}, lignin {}; else 1/m {}\n"
-      "# aspect ratios: cuticle {}, epidermis {}, spongy {}, palisade {}; sieve and detour {}\n",
-      p.structure == Structure::bifacial ? "bifacial" : "unifacial", p.thickness_m, p.mesophyll_fraction,
-      p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin, p.other_absorption,
-      p.cuticle_aspect, p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
-  // Only where they differ from the published model, whose tables keep their keys.
-  const bool prospect = p.absorption_tables == AbsorptionTables::prospect;
-  if (prospect || p.anthocyanins != 0 || p.dry_matter != 0 || p.brown_pigments != 0)
-    text += fmt::format("# PROSPECT-D's absorption {:016x}: {}, kg/m3: anthocyanins {}, dry matter {}\n",
-                        prospect_hash(), prospect ? "all" : "these", p.anthocyanins, p.dry_matter);
-  if (p.brown_pigments != 0) text += fmt::format("# brown pigments {} 1/m\n", p.brown_pigments);
-  if (p.spongy_share != 0) text += fmt::format("# share below the air space {}\n", p.spongy_share);
-  if (p.cuticle_refractivity != 1)
-    text += fmt::format("# relative refractivity of the cuticle {}\n", p.cuticle_refractivity);
-  for (const Pigment& pigment : p.pigments) {
-    uint64_t curve = 0;
-    for (const double x : pigment.specific_absorption) curve = hash_key(curve, std::bit_cast<uint64_t>(x));
-    text += fmt::format("# pigment {} kg/m3, absorption {:016x}\n", pigment.concentration, curve);
-  }
-  return text;
 }
 
 std::string describe(const TableRequest& request) {

@@ -18,8 +18,6 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
 /// constants, the versions of the code.
 std::string describe(const TableRequest& request);
 
-/// The leaf's share of that.
-std::string describe(const TissueParams& params);
 /// Returns a list of numbers as text: evenly spaced ones in short form, others one by one.
 std::string list_text(const std::vector<double>& values);
 

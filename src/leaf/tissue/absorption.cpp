@@ -1,27 +1,48 @@
 #include "leaf/tissue/absorption.h"
 
-#include "leaf/tissue/prospect.h"
-
 namespace frond::leaf {
+namespace {
 
-Constants constants_at(double lambda_nm, AbsorptionTables tables) {
-  Constants c = constants_at(lambda_nm);
-  if (tables == AbsorptionTables::prospect) {
-    const ProspectConstants other = prospect_constants_at(lambda_nm);
-    c.chlorophyll = other.chlorophyll, c.carotenoids = other.carotenoids, c.water = other.water;
-  }
-  return c;
+double specific(const LeafNumber& n, AbsorptionTables tables, double lambda_nm, const Constants& published,
+                const ProspectConstants& prospect) {
+  if (!n.spectrum.empty()) return interpolate(n.spectrum, lambda_nm);
+  if (n.is_of_prospect() || (n.prospect && tables == AbsorptionTables::prospect)) return prospect.*n.prospect;
+  return n.published ? published.*n.published : 1;
+}
+
+}  // namespace
+
+const std::vector<Absorber>& absorbers() {
+  static const std::vector<Absorber> all = [] {
+    std::vector<Absorber> found;
+    for (const LeafNumber& n : kLeafNumbers)
+      if (n.absorbs() && n.follows.empty()) found.push_back({{&n}});
+    for (const LeafNumber& n : kLeafNumbers)
+      for (Absorber& a : found)
+        if (n.follows == a.first().name) a.numbers.push_back(&n);
+    return found;
+  }();
+  return all;
+}
+
+double specific_absorption(const LeafNumber& number, AbsorptionTables tables, double lambda_nm) {
+  return specific(number, tables, lambda_nm, constants_at(lambda_nm), prospect_constants_at(lambda_nm));
 }
 
 double absorption_coefficient(const TissueParams& p, double lambda_nm) {
-  const Constants c = constants_at(lambda_nm, p.absorption_tables);
-  double sum = (p.chlorophyll_a + p.chlorophyll_b) * c.chlorophyll + p.carotenoids * c.carotenoids +
-               p.protein * c.protein + (p.cellulose + p.lignin) * c.cellulose + c.water + p.other_absorption;
-  if (p.anthocyanins > 0 || p.dry_matter > 0 || p.brown_pigments > 0) {
-    const ProspectConstants other = prospect_constants_at(lambda_nm);
-    sum +=
-        p.anthocyanins * other.anthocyanins + p.dry_matter * other.dry_matter + p.brown_pigments * other.brown_pigments;
-  }
+  const Constants published = constants_at(lambda_nm);
+  const ProspectConstants prospect = prospect_constants_at(lambda_nm);
+  // Leaves of the published model keep the bits of their sum: its constituents are added first, and of each model's
+  // concentrations before coefficients.
+  double sum = 0, others = 0;
+  for (const bool is_mass : {true, false})
+    for (const Absorber& a : absorbers()) {
+      const LeafNumber& n = a.first();
+      if ((n.unit == kMassPerVolume) != is_mass) continue;
+      (n.is_of_prospect() || !n.spectrum.empty() ? others : sum) +=
+          a.amount(p) * specific(n, p.absorption_tables, lambda_nm, published, prospect);
+    }
+  sum += others;
   const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
   for (const Pigment& pigment : p.pigments) {
     const std::vector<double>& s = pigment.specific_absorption;

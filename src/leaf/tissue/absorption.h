@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "leaf/tissue/constants.h"
-#include "leaf/tissue/tissue_params.h"
+#include "leaf/tissue/leaf_numbers.h"
 
 namespace frond::leaf {
 
@@ -35,12 +35,27 @@ struct WavelengthGrid {
 inline constexpr WavelengthGrid kAbsorptionGrid{360, 5, 429};
 static_assert(kAbsorptionGrid.nm(0) == kConstantsRange_nm.min && kAbsorptionGrid.nm(428) == kConstantsRange_nm.max);
 
-/// Returns the optical constants of a leaf with these tables of absorption: `constants_at`, where PROSPECT-D's replace
-/// chlorophyll, carotenoids and water with `prospect`.
-Constants constants_at(double lambda_nm, AbsorptionTables tables);
+/// A constituent and those that absorb like it.
+struct Absorber {
+  std::vector<const LeafNumber*> numbers;
 
-/// Returns the absorption coefficient of the mesophyll, 1/m: the sum over pigments, proteins, fibres and water of
-/// concentration times specific absorption, plus `other_absorption`.
+  const LeafNumber& first() const { return *numbers.front(); }
+  /// Amount of all in a leaf, in the unit of the numbers.
+  double amount(const TissueParams& p) const {
+    double sum = 0;
+    for (const LeafNumber* n : numbers) sum += n->of(p);
+    return sum;
+  }
+};
+/// All that absorbs, in the order of kLeafNumbers.
+const std::vector<Absorber>& absorbers();
+
+/// Returns the absorption of 1 of a constituent's unit, m^2/kg for a concentration, at a wavelength within
+/// kConstantsRange_nm.
+double specific_absorption(const LeafNumber& number, AbsorptionTables tables, double lambda_nm);
+
+/// Returns the absorption coefficient of the mesophyll, 1/m: the sum over all that absorbs (kLeafNumbers,
+/// pigments) of concentration times specific absorption.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
 /// The same at every wavelength of kAbsorptionGrid.

@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
 
 #include "core/random.h"
 
 namespace frond::leaf {
 namespace {
 
-struct Node {
-  double lambda_nm, value;
-};
+using Node = SpectrumNode;
 
 // clang-format off
 constexpr Node kChlorophyll[] = {
@@ -146,6 +143,8 @@ constexpr Node kWallIndex[] = {
 };
 // clang-format on
 
+}  // namespace
+
 double interpolate(std::span<const Node> nodes, double lambda_nm) {
   const auto above = std::lower_bound(nodes.begin(), nodes.end(), lambda_nm,
                                       [](const Node& node, double nm) { return node.lambda_nm < nm; });
@@ -160,8 +159,6 @@ uint64_t hash(std::span<const Node> nodes, uint64_t key) {
     key = hash_key(key, std::bit_cast<uint64_t>(node.lambda_nm), std::bit_cast<uint64_t>(node.value));
   return key;
 }
-
-}  // namespace
 
 Constants constants_at(double lambda_nm) {
   return {interpolate(kChlorophyll, lambda_nm),    interpolate(kCarotenoid, lambda_nm),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/spectrum.h"
 
@@ -16,6 +17,15 @@ struct Constants {
 
 /// Wavelengths (nm) in the domain of `constants_at`. Data begin at 400 nm; below, the first value is used.
 inline constexpr Interval kConstantsRange_nm{360, 2500};
+
+/// A point of a tabulated spectrum. Wavelengths are multiples of 5 nm, in ascending order (kAbsorptionGrid).
+struct SpectrumNode {
+  double lambda_nm, value;
+};
+/// Returns the value at a wavelength: linear between the nodes, the first or the last value beyond them.
+double interpolate(std::span<const SpectrumNode> nodes, double lambda_nm);
+/// Continues a hash with the nodes, for the keys of caches.
+uint64_t hash(std::span<const SpectrumNode> nodes, uint64_t key = 0);
 
 /// Returns the constants: linear between the nodes of figures after Baranoski 2006 (Remote Sensing of Environment
 /// 100:335-347) and the data that it publishes: within 0.3 % of the authors' tables, in steps of 5 nm.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -26,18 +27,17 @@ enum class AbsorptionTables : uint8_t {
   prospect,   ///< PROSPECT-D's, calibrated with measured leaves (prospect.h)
 };
 
+/// Most rows of the table of a leaf's numbers (leaf_numbers.h).
+inline constexpr size_t kMostLeafNumbers = 32;
+
 /// Biological parameters of a leaf: structure and chemistry.
 struct TissueParams {
   Structure structure = Structure::bifacial;
   double thickness_m = 0;
   double mesophyll_fraction = 0;  ///< share of the thickness that absorbs, in [0, 1]
   AbsorptionTables absorption_tables = AbsorptionTables::baranoski;
-  /// Concentrations in the mesophyll, kg/m^3.
-  double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
-  /// The same for constituents that the published model has not (prospect.h).
-  double anthocyanins = 0, dry_matter = 0;
-  double brown_pigments = 0;    ///< 1/m: PROSPECT's content per leaf area, which has no dimension, per mesophyll
-  double other_absorption = 0;  ///< 1/m, independent of wavelength: absorption by anything else
+  /// Concentrations of the constituents in the mesophyll, by the place of their rows in kLeafNumbers.
+  std::array<double, kMostLeafNumbers> concentrations = {};
   std::vector<Pigment> pigments = {};
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
   double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
@@ -46,6 +46,10 @@ struct TissueParams {
   /// Refractivity (index - 1) of the cuticle and epidermis, relative to the published one; above 0.
   double cuticle_refractivity = 1;
   bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta
+
+  /// The number of this name in scene files, which kLeafNumbers must have.
+  double& number(std::string_view name);
+  double number(std::string_view name) const { return const_cast<TissueParams&>(*this).number(name); }
 
   friend bool operator==(const TissueParams&, const TissueParams&) = default;
 };
