@@ -3,6 +3,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "jobs/record/job.h"
 #include "tests/cli/command.h"
@@ -285,6 +286,28 @@ TEST_F(FittingMany, WritesNothingIfItIsStopped) {
 
 TEST_F(FittingMany, OfOneLeafIsATableToo) { EXPECT_EQ(fitted({spectrum_, "--all-leaves"}).rows.size(), 1u); }
 
+/// The table states every number of a leaf that its scene file has: lignin, which follows cellulose, was missing.
+TEST_F(FittingMany, TheTableHasWhatTheSceneFileHas) {
+  for (const char* tables : {"prospect", "baranoski"}) {
+    const CsvTable table = fitted(
+        {spectrum_, "--all-leaves", "--absorption", tables, "--fix", "water=0.008g/cm2", "-o", name_of("a.pbrt")});
+    std::istringstream in(bytes_of(name_of("a.pbrt")));
+    int numbers = 0;
+    for (std::string line; std::getline(in, line);) {
+      const std::string name = "    \"float ";
+      if (!line.starts_with(name)) continue;
+      const size_t end = line.find('"', name.size());
+      const double value = std::stod(line.substr(end + 1));
+      ++numbers;
+      // With one of the tables a leaf has none of what only the other ones have.
+      if (value != 0) {
+        EXPECT_NEAR(table.number(0, line.substr(name.size(), end - name.size())) / value, 1, 1e-5) << line;
+      }
+    }
+    EXPECT_EQ(numbers, 17);
+  }
+}
+
 TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {
   const auto error = [](std::vector<std::string> words) {
     words.insert(words.begin(), "fit");
@@ -296,6 +319,8 @@ TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(error({spectrum_, spectrum_, "--leaf", "oak"}), HasSubstr("selects a leaf of one file"));
   EXPECT_THAT(error({spectrum_, "--all-leaves", "--plot", "a.svg"}), HasSubstr("--plot draws one leaf"));
   EXPECT_THAT(error({spectrum_, "--all-leaves", "--fix", "clorophylla=1"}), HasSubstr("did you mean"));
+  EXPECT_THAT(error({spectrum_, "--fix", "Cab=40"}),
+              HasSubstr("PROSPECT's Cab is chlorophyll, as chlorophyll=40ug/cm2"));
   EXPECT_THAT(error({name_of("none.csv"), "--all-leaves"}), HasSubstr("none.csv"));
   const std::string two = folder_.write("two.csv", "leaf,nm,R\na,550,.1\nb,550,.1\n").string();
   EXPECT_THAT(error({two}), AllOf(HasSubstr("--leaf selects one of a, b"), HasSubstr("--all-leaves takes all")));
