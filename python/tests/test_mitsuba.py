@@ -248,7 +248,7 @@ def test_an_export_reports_all_obstacles_and_can_approximate_them(tmp_path):
     """The sun and the sky of `sky`, and the mean of a checkerboard: mean radiances within 1 %, far above the noise."""
     mi, dr = variant("llvm_ad_rgb")
     text = re.sub('LightSource "distant".*\n', 'LightSource "sky" "float elevation" 50 "float illuminance" 3\n', SCENE)
-    text = text.replace('MakeNamedMaterial "paper"', 'Texture "t" "spectrum" "checkerboard"\nMakeNamedMaterial "paper"')
+    text = text.replace('MakeNamedMaterial "paper"', 'Texture "t" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8\nMakeNamedMaterial "paper"')
     text = text.replace('"diffusetransmission" "rgb reflectance" [ 0.5 0.3 0.2 ] "float scale" 1.2', '"diffuse" "texture reflectance" "t"')
     (tmp_path / "scene.pbrt").write_text(text)
     with pytest.raises(frond.InputError, match="(?s)checkerboard.*light .sky. has no equivalent"):
