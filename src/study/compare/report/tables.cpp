@@ -88,7 +88,7 @@ constexpr const char* kTable2Note =
 /// Table 2 of the paper, for absolute errors of colours.
 std::string table_2(const Comparison& c) {
   if (c.channels.are_bands() || c.request.relative) return "";
-  Table table{fmt::format("As the paper’s Table 2: RMS error of {} samples per pixel, and speed-up",
+  Table table{fmt::format("RMS error of {} samples per pixel and speed-up, as in Table 2 of Baranoski and Rokne",
                           c.candidates.front().runs.back().samples)};
   for (size_t i = 0; i < c.candidates.size(); ++i) {
     const auto& e = c.candidates[i].runs.back().errors[kAll];
