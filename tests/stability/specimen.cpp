@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "instruments/goniophotometer.h"
 #include "instruments/spectrophotometer.h"
+#include "leaf/tissue/leaf_numbers.h"
 
 namespace frond::stability {
 
