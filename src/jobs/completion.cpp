@@ -70,6 +70,7 @@ const JobParam* option_of(const CommandParams& command, const std::string& name)
   return nullptr;
 }
 
+/// Returns the command and the option that the last word of a command line belongs to.
 LastWord last_word(const Words& given) {
   static const std::regex kParted("\n([=:])(\n|$)");  // bash splits "--spp=4" into three words
   LastWord last{frond_params(), nullptr, {}};

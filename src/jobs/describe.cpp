@@ -112,6 +112,7 @@ Row row_of(const JobParam& p) {
                                                 : "[=" + value + "]")};
 }
 
+/// Rows of a command's table of options, in the order of its record.
 std::vector<Row> rows_of(std::span<const JobParam> params) {
   std::vector<Row> rows;
   for (const JobParam& p : params) rows.push_back(row_of(p));

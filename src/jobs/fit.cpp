@@ -88,6 +88,7 @@ constexpr leaf::AreaUnit kAreaUnits[] = {leaf::kMicrogramsPerCm2,
 
 /// Returns the parameter of this name that a fit may keep; nullptr if there is none.
 const leaf::LeafNumber* fixable(std::string_view name) {
+  // R and T do not depend on the shape of the surface, and a fit leaves it as it is.
   const leaf::LeafNumber* n = leaf::find_leaf_number(name);
   return n && n->is_parameter() && n->action != leaf::LeafAction::surface ? n : nullptr;
 }
@@ -110,6 +111,7 @@ leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& opt
     }
     fail({}, "{}: there is no fit parameter \"{}\"{}", option, name, suggestion(name, names));
   }
+  // The unit, if there is one, follows the number without a blank.
   std::string number = equals == word.npos ? "" : word.substr(equals + 1);
   const auto* unit =
       std::ranges::find_if(kAreaUnits, [&](const leaf::AreaUnit& u) { return number.ends_with(u.name); });
@@ -140,6 +142,7 @@ void check_contradictions(const leaf::FitRequest& request, const std::string& op
     if (fixed.name == "mesophyllfraction" && fixed.value == 0)
       fail({}, "{}: a mesophyll fraction of 0 absorbs nothing", option);
   for (const leaf::AreaContent& content : leaf::area_contents()) {
+    // A content that is a parameter too is that parameter, per area; another one gives its parts, or the thickness.
     if (!given(content.name) || fixable(content.name)) continue;
     std::vector<std::string_view> parts;
     for (const leaf::LeafNumber* part : leaf::parts_of(content)) parts.push_back(part->name);
@@ -230,6 +233,7 @@ void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const Materi
 
 /// Throws InputError if contents per area that were given lead to a leaf that the material would refuse.
 void check_fitted(const leaf::TissueParams& fitted, const MaterialInfo& material, const std::string& option) {
+  // A concentration that is given per area depends on the fitted thickness.
   for (const leaf::LeafNumber& n : leaf::leaf_parameters()) {
     const Param* p = find_param(material, n.name);
     if (p && !p->range.contains(n.of(fitted)))

@@ -216,6 +216,7 @@ void warn_of_unmet_instances(const JobRun& run, const FluxMeasurement& measureme
                                    unmet, count, more_paths(run.args)));
 }
 
+/// Relative error as text.
 std::string percent(double share) {
   constexpr double kLarge = 10;  // nothing is known of what has such an error
   return share > kLarge ? fmt::format("more than {:g} %", 100 * kLarge)

@@ -18,6 +18,7 @@ struct Sums {
   size_t rows = 0;
 };
 
+/// Unit vector at an angle from the normal and an azimuth from x, in the frame of a flat leaf.
 Vec3 direction(double theta_deg, double phi_deg) {
   const double degree = std::numbers::pi / 180, sine = std::sin(theta_deg * degree);
   return to_float(
