@@ -56,7 +56,7 @@ void check_leaves(std::span<const MaterialInfo* const> infos, const fs::path& fi
       fail({}, "plug-in \"{}\": the leaf model \"{}\" {}", file.string(), info->name, what);
     };
     if (!(info->leaf->cost > 0 && std::isfinite(info->leaf->cost)))
-      refuse(fmt::format("has a cost of {:g}: the CPU time of a path relative to leaf_lambert is needed",
+      refuse(fmt::format("has a cost of {:g}: the CPU time of a path relative to a Lambertian leaf is needed",
                          info->leaf->cost));
     const MaterialInfo* reference = registry.materials.find(info->leaf->reference);
     if (!reference || !reference->leaf || reference->leaf->reference != reference->name)
