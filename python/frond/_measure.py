@@ -156,14 +156,14 @@ def conform(material, *, session=None, **options):
 
 
 @_with_keywords_of("bench", "Result")
-def bench(material, with_=None, *, session=None, **options):
+def bench(material, with_=None, angles="0,45,80", *, session=None, **options):
     """Measures the cost of BSDFs. material, with_: text, or objects of `frond.Bsdf`."""
     from ._bsdf import Bsdf
     if isinstance(with_, Bsdf):
         with_ = [with_]
     if isinstance(with_, (list, tuple)):
         with_ = [_of_bsdf(one, session) if isinstance(one, Bsdf) else one for one in with_]
-    return FUNCTIONS["bench"](_of_bsdf(material, session), with_, session=session, **options)
+    return FUNCTIONS["bench"](_of_bsdf(material, session), with_, angles, session=session, **options)
 
 
 def register_material(name, bsdf, *, session=None):
