@@ -51,13 +51,13 @@ def render(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequ
     strict: Treat warnings as errors.
     json: JSON file to write; - is standard output."""
 
-def compare(scene: str | os.PathLike | Scene, materials: str | os.PathLike | Sequence[str | os.PathLike] = 'abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert', output: str | os.PathLike | None = None, *, reference: str | os.PathLike = 'abm,mode=weighted', rms: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, relative: bool = False, leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, wavelengths: float | Sequence[float] | str | None = None, size: int | None = None, spp: int | None = None, reference_spp: int | None = None, exposure: float | None = None, seed: int | None = None, quick: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def compare(scene: str | os.PathLike | Scene, materials: str | os.PathLike | Sequence[str | os.PathLike] | None = None, output: str | os.PathLike | None = None, *, reference: str | os.PathLike | None = None, rms: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, relative: bool = False, leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, wavelengths: float | Sequence[float] | str | None = None, size: int | None = None, spp: int | None = None, reference_spp: int | None = None, exposure: float | None = None, seed: int | None = None, quick: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the cost and the error of each leaf model in a scene.
 
     scene: Scene file (pbrt-v4 format).
-    materials: Candidates, separated by ;: [LABEL:]MATERIAL[,parameter=value...], optionally followed by @wavelengths=PLUGIN or @integrator=PLUGIN. The first is the baseline of speed-ups. Default: abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert. Repeatable.
+    materials: Candidates, separated by ;: [LABEL:]MATERIAL[,parameter=value...], optionally followed by @wavelengths=PLUGIN or @integrator=PLUGIN. The first is the baseline of speed-ups. By default every leaf model, from the most expensive to the cheapest, and its variant with less noise. Repeatable.
     output: Folder of the report: charts, tables, index.html. By default results are only printed.
-    reference: Candidate whose converged render is the reference. The default is the expectation of the analog random walk, with less noise. Default: abm,mode=weighted.
+    reference: Candidate whose converged render is the reference. The default is the expectation of the analog random walk, with less noise.
     rms: Report the cheapest candidate with this RMS error. Range: from 1e-06 to 1.
     target: RMS errors of red, green and blue for the speed-up at equal error: three numbers, or the paper's front, back or ambient. Excludes relative.
     relative: Report errors relative to the reference: RMS over pixels, divided by the reference's mean over them, in each channel; rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.
@@ -97,21 +97,21 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, file: str | os.P
     plot: Chart of measured and fitted spectra: .svg or .png.
     leaf: Name of the leaf to fit, if the file has several. Excludes all_leaves.
     all_leaves: Fit every leaf; csv has one row for each, with its parameters, their standard errors and, if it could not be fitted, the reason.
-    directions: Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction between it and leaf_solved with the fitted parameters. Excludes all_leaves.
+    directions: Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction between it and the fitted leaf. Excludes all_leaves.
     angle: Angle of incidence, if the file does not state it. Unit: degrees. Range: from 0 to 180. Default: 8.
     structure: Structure of the leaf; by default the better fit. One of bifacial, unifacial.
     sieve: Absorption with sieve and detour effects; by default the better fit. One of on, off.
     absorption: Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's (baranoski), with protein and cellulose. By default that of like, or else prospect. One of prospect, baranoski.
     fix: NAME=NUMBER[UNIT]: keep a parameter at this value, in the units of scene files, or a content per leaf area in ug/cm2, mg/cm2 or g/cm2 (chlorophyll=40ug/cm2, water=0.012g/cm2). Repeatable.
     like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
-    material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""
+    material: Leaf material to write. Default: leaf."""
 
 def table(leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, specimen: str | os.PathLike | None = None, method: str | os.PathLike = 'solve', *, wavelengths: float | Sequence[float] | str, angles: float | Sequence[float] | str = '0:180:1', rays: int = 1000000, nodes: int | None = None, depths: float | Sequence[float] | str | None = None, seed: int | None = None, equalsides: bool = False, output: str | os.PathLike, progress = None, session: Session | None | None = None) -> Result:
     """Compute the table of a leaf material and write it to a file for its "tablefile".
 
-    leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as FILE.leaf the complete material for other programs.
+    R and T by angle and wavelength, as CSV; or the mode table of a BSDF, and as FILE.leaf the complete material for other programs.
 
-    leaf: MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name leaf_simplified, for FILE.leaf leaf_solved.
+    leaf: MATERIAL,parameter=value,...: a leaf model that looks up a table, with the leaf's parameters; without a name the one with a table of R and T, for FILE.leaf the one with a mode table.
     specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     method: Method: solve (deterministic, without noise) or montecarlo (random walks, as published). One of solve, montecarlo. Default: solve.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
@@ -121,12 +121,12 @@ def table(leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, s
     depths: Range of optical depths in a .leaf file, for leaves whose chemistry varies. Range: from 0 on.
     seed: Seed of all random numbers.
     equalsides: Write the mean of both sides, at angles up to 90 degrees.
-    output: File to write; - is standard output. FILE.leaf, of leaf_solved: for other programs (docs/file_formats.md)."""
+    output: File to write; - is standard output. FILE.leaf, of a mode table: for other programs (docs/file_formats.md)."""
 
-def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike = 'leaf_solved', within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
-    Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal; abm uses incident=light.
+    Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal, or incident=light if their model is a random walk.
 
     scene: Scene file (pbrt-v4 format).
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
@@ -142,7 +142,7 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
     compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume. Repeatable.
-    reference: Reference leaf model of compare. Default: leaf_solved. Needs compare.
+    reference: Reference leaf model of compare; by default the exact model without noise. Needs compare.
     within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02. Needs compare.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
@@ -190,7 +190,7 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
 def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
     """Measure a material's reflectance, transmittance and absorptance.
 
-    material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
+    material: NAME[,parameter=value...]: material, as in leaf,specimen=maize.
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
@@ -211,7 +211,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
 
     Measure a material's BRDF and BTDF over the whole sphere.
 
-    material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
+    material: NAME[,parameter=value...]: material, as in leaf,specimen=maize.
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
@@ -251,7 +251,7 @@ def conform(material, *, session: Session | None | None = None, given_only: bool
 
     Exit code 0: no law was found broken; 2: a law is broken.
 
-    material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
+    material: NAME[,parameter=value...]: material, as in leaf,specimen=maize.
     given_only: Test the given parameters and defaults only. By default parameters that are not given are also tested at the ends of their ranges and at all choices, one at a time, with a tenth of the samples. Excludes sweep.
     sweep: Test the ranges of parameters that are not given finely: with all samples, also corners, points inside, and 1000 in place of an infinite end.
     samples: Number of samples for each direction. Range: from 1000 to 67108864. Default: 20000.
@@ -266,12 +266,12 @@ def conform(material, *, session: Session | None | None = None, given_only: bool
     json: JSON file to write; - is standard output.
     map: Map of the directions of the worst finding: .svg or .png."""
 
-def bench(material, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, *, session: Session | None | None = None, angles: float | Sequence[float] | str = '0,45,80', lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None) -> Result:
+def bench(material, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, angles = '0,45,80', *, session: Session | None | None = None, lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None) -> Result:
     """Measures the cost of BSDFs. material, with_: text, or objects of `frond.Bsdf`.
 
     Time the calls of a material's BSDF, and measure the variance of its samples.
 
-    material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
+    material: NAME[,parameter=value...]: material, as in leaf,specimen=maize.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     angles: Angles of the path's ray from the front's normal; above 90 it meets the back. Unit: degrees. Range: from 0 to 180. Default: 0,45,80.
     lanes: Numbers of wavelengths that a path carries. Range: from 1 to 4. Default: 1,2,3,4.
@@ -287,7 +287,7 @@ def bench(material, with_: str | os.PathLike | Sequence[str | os.PathLike] | Non
 def export(material: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Sequence[str | os.PathLike | Scene], format: str | os.PathLike, output: str | os.PathLike, *, wavelengths: float | Sequence[float] | str | None = None, angles: float | Sequence[float] | str | None = None, view_angles: float | Sequence[float] | str | None = None, view_azimuths: float | Sequence[float] | str | None = None, rays: int | None = None, seed: int | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, ignore_unsupported: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write a material's BSDF, or a scene, as files for other programs.
 
-    material: NAME[,parameter=value...]: material, as in abm,specimen=maize; for mitsuba a scene file (pbrt-v4 format).
+    material: NAME[,parameter=value...]: material, as in leaf,specimen=maize; for mitsuba a scene file (pbrt-v4 format).
     format: File format. mitsuba: a scene for Mitsuba 3, as a folder. radiance: BSDF of 145 x 145 Klems patches in XML, for Radiance and WINDOW. csv: R, T and f as a table, a line for each number. npz: the same table for numpy.load. netcdf: the same table as a classic NetCDF file. osl: an OSL shader of three lobes for Blender's Cycles. One of mitsuba, radiance, csv, npz, netcdf, osl.
     output: File to write; - is standard output, for text formats only. For mitsuba a folder.
     wavelengths: Wavelengths, ascending; for osl those of red,green,blue. For mitsuba one (mono variants), those of red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants). Unit: nm. Range: from 360 to 2500.

@@ -4,7 +4,7 @@
 
 #include "tests/cli/command.h"
 #include "tests/study/choose_scene.h"
-#include "tests/support/test_folder.h"
+#include "tests/support/input_error.h"
 
 /// A leaf model of a shared object (examples/plugins/leaf_angular.cpp) takes part in all that built-in ones do.
 namespace frond {

@@ -97,9 +97,10 @@ void Materials::write_bent(Xml& xml, const ParsedPlugin& bend, const ParsedPlugi
     return write_plain(xml, plugin, id, index);
   }
   with_image_.insert(index);
-  context_.warn(p.where(is_map ? "normalmap" : "displacement"),
-                "Mitsuba drops light on the other side of the surface than of its mapped normal, which frond keeps: steep "
-                "maps are darker there");
+  context_.warn(
+      p.where(is_map ? "normalmap" : "displacement"),
+      "Mitsuba drops light on the other side of the surface than of its mapped normal, which frond keeps: steep "
+      "maps are darker there");
   const Element outer(xml, "bsdf", {{"type", is_map ? "normalmap" : "bumpmap"}, {"id", id}});
   if (is_map) {
     write_normals(context_, xml, "normalmap", p.file("normalmap"), read_rgb(p, "normalmap").image);
