@@ -36,6 +36,8 @@ def _registered(bsdf, session):
 def _of_bsdf(material, session):
     """Returns a material as text; an object of `frond.Bsdf` is registered."""
     from ._bsdf import Bsdf
+    if isinstance(material, type) and issubclass(material, Bsdf):
+        raise TypeError(f"material: {material.__name__} is a class; give an object of it, as in {material.__name__}()")
     return _registered(material, session) if isinstance(material, Bsdf) else material_text(material)
 
 

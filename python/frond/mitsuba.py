@@ -599,11 +599,11 @@ def main(words=None):
     parser.add_argument("scene", help="scene.xml, as frond export --format mitsuba writes it")
     parser.add_argument("-o", "--output", required=True, help="image file: .exr, .png or .jpg")
     parser.add_argument("--variant", default="llvm_ad_rgb", help="Mitsuba's variant (default: %(default)s)")
-    parser.add_argument("--samples", type=int, default=0, help="samples per pixel (default: the scene's)")
+    parser.add_argument("--spp", "--samples", dest="samples", type=int, default=0, help="samples per pixel (default: the scene's)")
     parser.add_argument("--seed", type=int, default=0, help="seed (default: %(default)s)")
     args = parser.parse_args(words)
     if args.samples < 0:
-        parser.error(f"--samples {args.samples}: at least 1, or 0 for the scene's")
+        parser.error(f"--spp {args.samples}: at least 1, or 0 for the scene's")
     output = pathlib.Path(args.output)
     if output.suffix.lower() not in (".exr", ".png", ".jpg", ".jpeg"):
         parser.error(f"--output {output}: the name ends in .exr, .png or .jpg")

@@ -46,11 +46,11 @@ constexpr JobParam kParams[] = {
     JobParam("instance-error", real,
              "Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR "
              "photons that each absorbs, or without PAR of the light in the worst band; --paths is then not used.",
-             {.range = kAboveZero, .relative = true, .needs = "by"}),
+             {.range = {kAboveZero.min, 1}, .relative = true, .needs = "by"}),
     JobParam("irradiance", text,
              "Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name "
              "of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the "
-             "scene, and photons, which need a unit, solar-am1.5-global.",
+             "scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global.",
              {.type = "SPECTRUM", .unit = "W/(m2 nm)", .decides = true}),
     kSwapParam,
     kSeedParam,
@@ -130,7 +130,7 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
 
 /// The value of --irradiance for that of the scene's lights.
 constexpr std::string_view kOfScene = "scene";
-/// Light of photons, which need a unit, unless --irradiance names another.
+/// Light of photons, which need a unit, where the scene's has none.
 constexpr std::string_view kOfPhotons = "solar-am1.5-global";
 
 /// Returns the spectrum that --irradiance names; nullptr if it is not given, and for that of the scene.
@@ -140,8 +140,21 @@ SpectrumPtr named_irradiance(const JobRun& run) {
   return named_or_read_spectrum(light, light, {});
 }
 
-/// Throws InputError unless --irradiance is in W/(m2 nm). The light sky alone keeps the unit of its data; its
-/// illuminance has none either.
+/// Returns the first light of the scene without a unit; nullptr if there is none. The light sky alone keeps the unit of
+/// its data; its illuminance has none either.
+const ParsedPlugin* light_without_unit(const SceneDescription& description) {
+  for (const auto& [light, _] : description.lights)
+    if (light.name != "sky" || find_param(light.params, "illuminance")) return &light;
+  return nullptr;
+}
+
+/// Returns the name of the light of photons: --irradiance, or that of the scene if it has a unit.
+std::string light_of_photons(const JobRun& run, const SceneDescription& description) {
+  if (run.args.given("irradiance")) return run.args.text("irradiance");
+  return std::string(light_without_unit(description) ? kOfPhotons : kOfScene);
+}
+
+/// Throws InputError unless --irradiance is in W/(m2 nm).
 void check_physical(const SceneDescription& description, const JobRun& run) {
   const std::string name = run.args.text("irradiance");
   if (name != kOfScene) {
@@ -150,13 +163,12 @@ void check_physical(const SceneDescription& description, const JobRun& run) {
            run.args.spelled("irradiance"), name);
     return;
   }
-  for (const auto& [light, _] : description.lights) {
-    const ParsedParam* scaled = find_param(light.params, "illuminance");
-    if (light.name != "sky" || scaled)
-      fail(scaled ? scaled->where : light.where,
-           "{} {}: this light is scaled to {} and has no unit; take LightSource \"sky\" without \"illuminance\", or "
-           "name a spectrum in W/(m2 nm)",
-           run.args.spelled("irradiance"), kOfScene, scaled ? "an illuminance" : "luminance 1");
+  if (const ParsedPlugin* light = light_without_unit(description)) {
+    const ParsedParam* scaled = find_param(light->params, "illuminance");
+    fail(scaled ? scaled->where : light->where,
+         "{} {}: this light is scaled to {} and has no unit; take LightSource \"sky\" without \"illuminance\", or "
+         "name a spectrum in W/(m2 nm)",
+         run.args.spelled("irradiance"), kOfScene, scaled ? "an illuminance" : "luminance 1");
   }
 }
 
@@ -168,7 +180,7 @@ std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescri
   if (!PhotonWeights::are_covered_by(bands)) return {};
   check_physical(description, run);
   if (irradiance) return PhotonWeights::of(bands, *irradiance);
-  if (run.args.text("irradiance") == kOfScene)
+  if (light_of_photons(run, description) == kOfScene)
     return PhotonWeights::of(bands, *horizontal_irradiance(meter.scene(), {400, 700}));
   return PhotonWeights::of(bands, *named_spectrum(kOfPhotons, {}));
 }
@@ -285,10 +297,12 @@ Result flux(const JobRun& run) {
                             .by_instance = is_by_instance};
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   std::optional<PhotonWeights> photons;
+  std::string light;
   const auto load = [&] {
     const SceneDescription description = described_scene(run);
     auto made = std::make_unique<FluxMeter>(run.session(), description, request);
     photons = photon_weights(run, description, *made, irradiance);
+    light = light_of_photons(run, description);
     return made;
   };
   const auto loaded = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
@@ -305,8 +319,7 @@ Result flux(const JobRun& run) {
   const double error = measurement.error();
   warn_of_unmet(run, measurement);
   const bool are_weighted = !bands.front().response.empty();
-  const std::string light =
-      run.args.given("irradiance") ? run.args.text("irradiance") : std::string(are_weighted ? kOfScene : kOfPhotons);
+  if (are_weighted && !run.args.given("irradiance")) light = kOfScene;
   Result result{
       .tables = {share_table(measurement, photons)},
       .facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}},

@@ -29,7 +29,7 @@ constexpr JobParam kParams[] = {
     kSeedParam,
     kCsvParam,
     kJsonParam,
-    chart_param("plot", "Chart of R and 1 - T against wavelength or angle: .svg or .png."),
+    chart_param("plot", "Chart of R and T against wavelength or angle: .svg or .png."),
 };
 
 /// A share of the incident light, its column and its estimate.

@@ -1,5 +1,5 @@
 // A table of a leaf's numbers with one more row than frond's. Loaded before libfrond (LD_PRELOAD), it is the table of
-// the whole program: python/tests/test_constituent.py.
+// the whole program: tests/constituent.
 #include <algorithm>
 #include <array>
 

@@ -21,7 +21,7 @@ inline constexpr JobParam kPeriodParam("period", ArgumentKind::numbers,
                                        "Lengths along x and y after which the scene is repeated periodically.",
                                        {.type = "X,Y", .range = kAboveZero, .values = 2, .decides = true});
 constexpr JobParam rms_param(std::string_view doc) {
-  return JobParam("rms", ArgumentKind::real, doc, {.range = kAboveZero});
+  return JobParam("rms", ArgumentKind::real, doc, {.range = {kAboveZero.min, 1}});
 }
 inline constexpr JobParam kCheckpointParam(
     "checkpoint", ArgumentKind::real,
