@@ -55,7 +55,7 @@ constexpr MtlStatement kStatements[] = {
     {"pc", Use::unless_0, "clear coat (Pc)"},
     {"aniso", Use::unless_0, "anisotropy (aniso)"},
     {"map_ks", Use::lost, "specular map"},
-    {"map_ns", Use::lost, "specular map"},
+    {"map_ns", Use::lost, "map of gloss (map_Ns)"},
     {"map_ke", Use::lost, "emission map"},
     {"map_emissive", Use::lost, "emission map"},
     {"map_bump", Use::lost, "height map"},

@@ -101,6 +101,10 @@ TEST_F(RadiometryJobs, PhotonsAreCountedInPhysicalUnitsAlone) {
   EXPECT_THAT(measured(kSun, {"flux"}).err, HasSubstr("no PAR: bands from 400"));
   EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", par}).err,
               HasSubstr("; incident PAR 1977.9 µmol/(m2 s), irradiance solar-am1.5-global\n"));
+  // A sky has a unit: its photons are not those of another sun.
+  EXPECT_EQ(measured(sky, {"flux", "--wavelengths", par, "-q", "--csv", "-"}).out,
+            measured(sky, {"flux", "--wavelengths", par, "-q", "--csv", "-", "--irradiance", "scene"}).out);
+  EXPECT_THAT(measured(sky, {"flux", "--wavelengths", par}).err, HasSubstr("irradiance scene\n"));
 }
 
 /// PAR and green have one mean wavelength; the names and the order are those of the files.
@@ -289,6 +293,8 @@ TEST_F(RadiometryByInstance, ContinuesUntilTheMedianErrorIsReached) {
   EXPECT_EQ(paths, 262144);
   EXPECT_EQ(median({"--instance-error", "0.05", "--rms", "0.00009"}).second, 1 << 20);  // both
   EXPECT_THAT(measured(kSun, {"flux", "--instance-error", "0.05"}).err, HasSubstr("--instance-error needs --by"));
+  EXPECT_THAT(measured(kSun, {"flux", "--by", "instance", "--instance-error", "5"}).err,
+              HasSubstr("--instance-error: a number above 0, up to 1, or a share in percent, as in 2%,"));
 }
 
 TEST_F(RadiometryByInstance, AnErrorThatCannotBeReachedEnds) {
