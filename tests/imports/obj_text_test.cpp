@@ -138,7 +138,7 @@ TEST(MtlStatements, WhatIsNotReadIsNamed) {
            {"disp b.png", "displacement map"},
            {"decal b.png", "decal"},
            {"refl -type sphere b.png", "reflection map (refl)"},
-           {"map_Ns b.png", "specular map"},
+           {"map_Ns b.png", "map of gloss (map_Ns)"},
            {"map_Pr b.png", "roughness map"},
            {"d -halo 0.5", "opacity by direction (d -halo)"},
            {"d x", "opacity that is no number"},
