@@ -136,7 +136,7 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     paths: Number of paths for each view, rounded up to a multiple of 32; at least 32 for each wavelength are traced. Range: from 1 to 4294967296. Default: 65536.
-    rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0.
+    rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0, up to 1.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
@@ -173,11 +173,11 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     paths: Number of light paths; at least 32 for each wavelength are traced. Default: 1e6.
-    rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
+    rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0, up to 1.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each; the table of shares is then in a file beside that of csv: leaves-flux.csv beside leaves.csv. One of instance.
-    instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0. Needs by.
-    irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene, and photons, which need a unit, solar-am1.5-global. Unit: W/(m2 nm).
+    instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0, up to 1. Needs by.
+    irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global. Unit: W/(m2 nm).
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
@@ -201,7 +201,7 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.Path
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
-    plot: Chart of R and 1 - T against wavelength or angle: .svg or .png."""
+    plot: Chart of R and T against wavelength or angle: .svg or .png."""
 
 def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
     """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr

@@ -48,6 +48,9 @@ std::vector<Tick> log_ticks(const Range& r, double most) {
   return ticks;
 }
 
+/// Width of small text, relative to other text.
+constexpr double kSmallWidth = 0.88;
+
 /// Upper bound of a text's width in pixels.
 double width_of(std::string_view text) {
   return kCharacter * double(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
@@ -168,7 +171,7 @@ class PanelDrawing {
     for (const Series& s : panel.series) {
       const auto lines = lines_of(s.end);
       for (size_t i = 0; i < lines.size(); ++i)
-        room = std::max(room, kLeader + (i == 0 ? 1.05 : 0.88) * width_of(lines[i]) + 8);
+        room = std::max(room, kLeader + (i == 0 ? 1.05 : kSmallWidth) * width_of(lines[i]) + 8);
     }
     return std::min(room, kMost * panel.width);
   }
@@ -203,7 +206,8 @@ class PanelDrawing {
       const double x = right_ + kLeader, y = l.middle + (lines.size() > 1 ? -2 : 5), room = room_of_ends(p_) - kLeader;
       out += stroke(fmt::format("M{:.2f},{:.2f}L{:.2f},{:.2f}", l.x + 6, l.y, x - 5, l.middle), l.series->color, 0.6);
       out += text_at(x, y, lines[0], fmt::format("{} fill='{}'", kStart, l.series->color), room);
-      if (lines.size() > 1) out += text_at(x, y + 14, lines[1], std::string(kStart) + kSmall + " fill='#555'", room);
+      if (lines.size() > 1)
+        out += text_at(x, y + 14, lines[1], std::string(kStart) + kSmall + " fill='#555'", room / kSmallWidth);
     }
     return out;
   }
