@@ -16,7 +16,7 @@ DIFFUSE = "leaf_lambert,bihemispherical=true"
 MODELS = ["leaf_lambert", DIFFUSE, "leaf_simplified", "leaf_solved"]
 REFERENCE = "leaf_solved"
 SIMPLER = [model for model in MODELS if model != REFERENCE]
-#: In the chart: colour, name, and where the name stands in the first panel (degrees, % of difference).
+#: In the chart: colour, name, and position of the name in the first panel (degrees, % of difference).
 STYLES = {"leaf_lambert": (charts.COLORS[2], "leaf_lambert", (10, 60)),
           DIFFUSE: (charts.COLORS[4], "leaf_lambert,\nbihemispherical", (-4, 235)),
           "leaf_simplified": (charts.COLORS[1], "leaf_simplified", (-42, -32))}

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/stop.h"
 #include "image/image_file.h"
 #include "scene/format/plugin_text.h"
 
@@ -142,8 +143,10 @@ Texels texels_of(Context& context, const ParsedPlugin& plugin, const PluginInfo&
 Image tabulated(const ImageFrame& frame, std::vector<std::string> channels, const ColorAt& at) {
   const size_t count = channels.size();
   Image image(frame.width, frame.height, std::move(channels));
+  StopPoll poll;
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
+      poll();
       const std::vector<double> values = at(TexturePoint{.uv = frame.uv(x, y)});
       for (size_t c = 0; c < count; ++c) image.at(x, y, c) = float(values[c]);
     }
