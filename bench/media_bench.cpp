@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/log.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "render/plugins.h"
 #include "render/render_loop.h"
 #include "scene/format/parser.h"

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "study/compare/reference_store.h"
 
 namespace frond {

@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/bundle_render.h"
-#include "core/random.h"
+#include "core/math/random.h"
 
 /// The light `sky`: time of its functions, and CPU time of a path under it relative to that under a constant sky and a
 /// distant light. Names do not change between releases.

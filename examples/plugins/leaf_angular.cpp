@@ -1,7 +1,7 @@
 #include <numbers>
 
 #include "core/plugin_module.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "leaf/table/lookup.h"
 #include "leaf/table/table_cache.h"
 #include "materials/leaf_params.h"

@@ -1,5 +1,5 @@
 #include "core/plugin_module.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 
 namespace paper {
 namespace {

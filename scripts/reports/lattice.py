@@ -7,7 +7,7 @@ from scipy.stats import qmc
 
 from tools import ROOT, arguments, table, write_section
 
-SOURCE = (ROOT / "src/scene/cameras/samplers.cpp").read_text(encoding="utf-8")
+SOURCE = (ROOT / "src/cameras/samplers.cpp").read_text(encoding="utf-8")
 SECOND = int(re.search(r"kSecond = (0x[0-9a-f]+)", SOURCE)[1], 16)
 REORDER = int(re.search(r"kReorder = (0x[0-9a-f]+)", SOURCE)[1], 16)
 FACTORS = {name: int(re.search(rf"{constant} = (\d+)", SOURCE)[1]) for name, constant in

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "core/arena.h"
-#include "core/random.h"
+#include "core/math/random.h"
+#include "core/math/vec.h"
 #include "core/spectrum.h"
-#include "core/vec.h"
 
 namespace frond {
 

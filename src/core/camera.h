@@ -2,9 +2,9 @@
 
 #include <new>
 
+#include "core/math/ray.h"
+#include "core/math/transform.h"
 #include "core/plugin.h"
-#include "core/ray.h"
-#include "core/transform.h"
 
 namespace frond {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "core/math/vec.h"
 #include "core/plugin.h"
-#include "core/vec.h"
 
 namespace frond {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "core/math/transform.h"
 #include "core/plugin.h"
 #include "core/shape.h"
 #include "core/spectrum.h"
-#include "core/transform.h"
 
 namespace frond {
 

@@ -6,11 +6,11 @@
 #include "core/arena.h"
 #include "core/bsdf.h"
 #include "core/log.h"
+#include "core/math/vec.h"
 #include "core/parallel.h"
 #include "core/plugin.h"
 #include "core/shared_work.h"
 #include "core/texture.h"
-#include "core/vec.h"
 #include "core/wavelengths.h"
 
 namespace frond {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 #include "core/spectrum.h"
 #include "core/units/quantity.h"
-#include "core/vec.h"
 
 namespace frond {
 

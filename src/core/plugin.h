@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
@@ -21,6 +22,16 @@ struct PluginInfo {
   std::string_view source;  ///< publication or program that the model comes from
   std::span<const Param> params;
 };
+
+/// Returns the parameter of this name, or nullptr.
+inline const Param* find_param(const PluginInfo& info, std::string_view name) {
+  const auto found = std::ranges::find(info.params, name, &Param::name);
+  return found == info.params.end() ? nullptr : &*found;
+}
+inline const ParsedParam* find_param(std::span<const ParsedParam> params, std::string_view name) {
+  const auto found = std::ranges::find(params, name, &ParsedParam::name);
+  return found == params.end() ? nullptr : &*found;
+}
 
 /// Returns the result of `make()`. InputError and Stopped pass through; any other exception, and a null pointer as
 /// result, become an InputError at `where` that names the plug-in.

@@ -17,7 +17,7 @@
 
 namespace frond {
 
-struct MediumInfo;  // scene/media/medium.h
+struct MediumInfo;  // core/medium.h
 
 /// Version of the first two members of PluginModule, by which frond decides whether it can load a shared object. It
 /// changes if their position or meaning changes.

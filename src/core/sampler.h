@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
+#include "core/math/random.h"
+#include "core/math/vec.h"
 #include "core/plugin.h"
-#include "core/random.h"
-#include "core/vec.h"
 
 namespace frond {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/material.h"
+#include "core/math/ray.h"
+#include "core/math/transform.h"
 #include "core/plugin.h"
-#include "core/ray.h"
-#include "core/transform.h"
 
 namespace frond {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <memory>
 
-#include "core/float4.h"
+#include "core/math/float4.h"
 #include "core/units/interval.h"
 
 namespace frond {

@@ -2,12 +2,12 @@
 
 #include <cstring>
 
+#include "core/math/transform.h"
+#include "core/math/vec.h"
 #include "core/params.h"
 #include "core/plugin.h"
 #include "core/shared_work.h"
 #include "core/spectrum.h"
-#include "core/transform.h"
-#include "core/vec.h"
 
 namespace frond {
 

@@ -4,11 +4,11 @@
 
 #include "core/light.h"
 #include "core/material.h"
-#include "core/ray.h"
+#include "core/math/ray.h"
 
 namespace frond {
 
-class Medium;  // scene/media/medium.h
+class Medium;
 
 /// Participating media on the two sides of a surface; nullptr: vacuum.
 struct MediumInterface {

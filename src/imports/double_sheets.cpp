@@ -5,8 +5,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/math/random.h"
 #include "core/parallel.h"
-#include "core/random.h"
 #include "imports/hidden_triangles.h"
 
 namespace frond {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace frond {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/precise_transform.h"
+#include "core/math/precise_transform.h"
 
 namespace frond {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/math/affine_map.h"
+#include "core/math/vec.h"
 #include "core/shape.h"
-#include "core/vec.h"
 #include "imports/imported_scene.h"
-#include "scene/math/affine_map.h"
 
 namespace frond {
 

@@ -11,7 +11,7 @@
 #include "imports/geometry_losses.h"
 #include "imports/model_reader.h"
 #include "scene/geometry/instance_writer.h"
-#include "scene/shapes/ply_writer.h"
+#include "shapes/ply_writer.h"
 #include "system/new_files.h"
 
 namespace frond {

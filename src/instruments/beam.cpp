@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 
 namespace frond {
 

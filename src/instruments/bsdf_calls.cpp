@@ -3,7 +3,7 @@
 #include <cassert>
 #include <numbers>
 
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 
 namespace frond {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "instruments/sphere.h"
 
 namespace frond {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 #include "instruments/guided_edges.h"
 
 namespace frond {

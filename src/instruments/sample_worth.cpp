@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "instruments/beam.h"
 #include "instruments/bsdf_calls.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace frond {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "core/texture.h"
 
 namespace frond {

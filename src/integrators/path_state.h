@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/random.h"
-#include "core/ray.h"
+#include "core/math/random.h"
+#include "core/math/ray.h"
 #include "integrators/light_selector.h"
 
 namespace frond {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/sampling.h"
 #include "core/parallel.h"
-#include "core/sampling.h"
 #include "integrators/lane_set.h"
 #include "integrators/path_parts.h"
 #include "integrators/path_state.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/media/tracking.h"
+#include "media/tracking.h"
 
 namespace frond {
 

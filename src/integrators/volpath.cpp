@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/integrator.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "integrators/path_parts.h"
 #include "integrators/shadow_ray.h"
 #include "integrators/spectral_path.h"

@@ -7,8 +7,8 @@
 
 #include "jobs/record/command_line.h"
 #include "render/plugins.h"
-#include "scene/textures/normal_map.h"
 #include "system/new_files.h"
+#include "textures/normal_map.h"
 
 namespace frond {
 

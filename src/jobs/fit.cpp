@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "core/messages/counted.h"
+#include "core/units/number.h"
 #include "jobs/record/common_params.h"
 #include "jobs/support/fit_directions.h"
 #include "leaf/fit/measured_spectra.h"
@@ -15,7 +16,6 @@
 #include "report/chart.h"
 #include "report/fit_report.h"
 #include "report/text_output.h"
-#include "scene/format/tokenizer.h"
 #include "scene/leaf_models.h"
 #include "system/machine.h"
 

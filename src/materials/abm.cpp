@@ -1,5 +1,5 @@
 #include "core/material.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "leaf/walk/batch_walk.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/surface_lobe.h"

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <numbers>
 
-#include "core/random.h"
-#include "core/sampling.h"
+#include "core/math/random.h"
+#include "core/math/sampling.h"
 #include "core/stop.h"
 #include "radiometry/lit_bands.h"
 #include "radiometry/radiometer_scene.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "system/atomic_file.h"
 #include "system/file_bytes.h"
 

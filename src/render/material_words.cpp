@@ -1,6 +1,6 @@
 #include "render/material_words.h"
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace frond {
 

@@ -9,11 +9,11 @@
 #include "core/camera.h"
 #include "core/filter.h"
 #include "core/integrator.h"
+#include "core/math/motion.h"
 #include "core/parallel.h"
 #include "core/wavelengths.h"
 #include "render/film/film.h"
 #include "render/progress.h"
-#include "scene/math/motion.h"
 
 namespace frond {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/cameras/films.h"
+#include "cameras/films.h"
 #include "scene/format/plugin_text.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"

@@ -3,7 +3,7 @@
 
 #include "scene/format/plugin_text.h"
 #include "scene/origin.h"
-#include "scene/shapes/ply.h"
+#include "shapes/ply.h"
 
 // Scene descriptions in coordinates relative to their origins (scene/origin.h).
 

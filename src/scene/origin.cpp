@@ -7,7 +7,7 @@
 
 #include "scene/format/plugin_text.h"
 #include "scene/geometry/instance_table.h"
-#include "scene/shapes/ply.h"
+#include "shapes/ply.h"
 
 namespace frond {
 namespace {

@@ -8,7 +8,7 @@
 #include "scene/leaf_models.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
-#include "scene/textures/normal_map.h"
+#include "textures/normal_map.h"
 
 namespace frond {
 namespace {

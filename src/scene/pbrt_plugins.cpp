@@ -8,7 +8,7 @@
 #include <span>
 
 #include "scene/format/plugin_text.h"
-#include "scene/textures/normal_map.h"
+#include "textures/normal_map.h"
 
 namespace frond {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "scene/scene.h"
 #include "spectra/color/color_space.h"
 

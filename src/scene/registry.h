@@ -6,10 +6,10 @@
 #include "core/integrator.h"
 #include "core/light.h"
 #include "core/material.h"
+#include "core/medium.h"
 #include "core/sampler.h"
 #include "core/shape.h"
 #include "core/texture.h"
-#include "scene/media/medium.h"
 
 namespace frond {
 

@@ -5,7 +5,6 @@
 #include "core/messages/problems.h"
 #include "scene/format/known_names.h"
 #include "scene/scene_options.h"
-#include "scene/textures/normal_map.h"
 #include "spectra/analytic.h"
 #include "spectra/beyond_data.h"
 #include "spectra/check_range.h"
@@ -16,6 +15,7 @@
 #include "spectra/spd_file.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/fixed_wavelengths.h"
+#include "textures/normal_map.h"
 
 namespace frond {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/textures/normal_map.h"
+#include "textures/normal_map.h"
 
 namespace frond {
 

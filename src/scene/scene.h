@@ -12,7 +12,7 @@
 #include "scene/geometry/tiling.h"
 #include "scene/registry.h"
 #include "scene/resolver.h"
-#include "scene/textures/footprint.h"
+#include "textures/footprint.h"
 
 namespace frond {
 

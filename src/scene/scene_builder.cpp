@@ -5,15 +5,15 @@
 #include "core/messages/problems.h"
 #include "core/stop.h"
 #include "scene/format/plugin_text.h"
+#include "scene/geometry/shape_emitter.h"
 #include "scene/geometry_builder.h"
 #include "scene/leaf_models.h"
-#include "scene/lights/shape_emitter.h"
 #include "scene/origin.h"
 #include "scene/pilot_rays.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
-#include "scene/textures/normal_map.h"
 #include "spectra/check_range.h"
+#include "textures/normal_map.h"
 
 namespace frond {
 namespace {

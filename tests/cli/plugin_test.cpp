@@ -55,7 +55,7 @@ TEST(Plugin, WhatIsNoneIsRefusedWithAReason) {
   EXPECT_THAT(refusal(library("other_interface")),
               HasSubstr("has version 3 of the plug-in interface, this frond has version 2: build it again"));
   EXPECT_THAT(refusal(library("other_build")),
-              HasSubstr("was compiled from other headers than this frond (core/vec.h): build it again"));
+              HasSubstr("was compiled from other headers than this frond (core/math/vec.h): build it again"));
   EXPECT_THAT(refusal(library("without_record")), HasSubstr("does not say which headers it was compiled from"));
   EXPECT_THAT(refusal(library("wrong_default")),
               HasSubstr("light \"deep\": the default of \"depth\" has the wrong type: it takes a number"));
@@ -69,7 +69,7 @@ TEST(Plugin, WhatIsNoneIsRefusedWithAReason) {
 TEST(Plugin, RecordsTheHeadersThatItIncludesAndNoOthers) {
   std::ifstream file(library("kinds"), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  for (const std::string header : {"core/plugin_module.h", "core/light.h", "core/vec.h"})
+  for (const std::string header : {"core/plugin_module.h", "core/light.h", "core/math/vec.h"})
     EXPECT_THAT(bytes, HasSubstr(header + " ")) << header;
   for (const std::string header : {"report/table.h", "scene/scene.h", "jobs/record/job.h"})
     EXPECT_THAT(bytes, Not(HasSubstr(header))) << header;

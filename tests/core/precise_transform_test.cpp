@@ -1,8 +1,8 @@
-#include "core/precise_transform.h"
+#include "core/math/precise_transform.h"
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace frond {
 namespace {

@@ -1,10 +1,10 @@
-#include "core/transform.h"
+#include "core/math/transform.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace frond {
 namespace {

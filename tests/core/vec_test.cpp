@@ -1,11 +1,11 @@
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "core/random.h"
-#include "core/sampling.h"
+#include "core/math/random.h"
+#include "core/math/sampling.h"
 
 namespace frond {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "exports/cpp/frond_leaf.h"
 #include "tests/fuzz/fuzz.h"
 

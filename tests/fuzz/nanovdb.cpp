@@ -1,6 +1,6 @@
 // NanoVDB files, as the medium "nanovdb" reads them.
 
-#include "scene/media/nanovdb_grid.h"
+#include "media/nanovdb_grid.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace frond;

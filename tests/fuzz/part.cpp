@@ -3,7 +3,7 @@
 
 #include <zstd.h>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "render/film/image_format.h"
 #include "render/parts/part_file.h"
 #include "tests/fuzz/fuzz.h"

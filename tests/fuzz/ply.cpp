@@ -1,6 +1,6 @@
 // PLY meshes: text, and binary in either byte order.
 
-#include "scene/shapes/ply.h"
+#include "shapes/ply.h"
 
 #include "tests/fuzz/fuzz.h"
 

@@ -1,8 +1,8 @@
 // Scene files up to the description: tokens, directives, includes, pbrt's plug-ins.
 
+#include "core/math/motion.h"
 #include "core/messages/problems.h"
 #include "render/plugins.h"
-#include "scene/math/motion.h"
 #include "scene/read_scene.h"
 #include "tests/fuzz/scene_input.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "radiometry/sums_file.h"
 #include "tests/fuzz/fuzz.h"
 

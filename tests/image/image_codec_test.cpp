@@ -26,7 +26,7 @@ TEST(ImageCodec, WhatIsNoneIsRefusedWithAReason) {
               AllOf(HasSubstr("text.so\" cannot be loaded"), HasSubstr("file too short")));
   EXPECT_THAT(refusal(FROND_TEST_PLUGINS "/planted.so"), HasSubstr("planted.so\" has no function frond_image_codec"));
   EXPECT_THAT(refusal(FROND_TEST_PLUGINS "/other_codec.so"),
-              HasSubstr("other_codec.so\" was compiled from other headers than this frond (core/vec.h)"));
+              HasSubstr("other_codec.so\" was compiled from other headers than this frond (core/math/vec.h)"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 /// Errors of the size that is called detectable are found in the stated share of experiments. 5 standard errors of this
 /// share: each expectation fails for one seed in two million, and those here are fixed.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace frond {
 namespace {

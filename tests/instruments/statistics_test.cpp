@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace frond {
 namespace {

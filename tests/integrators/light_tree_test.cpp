@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/random.h"
-#include "core/sampling.h"
+#include "core/math/random.h"
+#include "core/math/sampling.h"
 #include "tests/support/render_text.h"
 
 namespace frond {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "leaf/fit/bare_leaf.h"
 #include "leaf/fit/optics_surface.h"
 #include "leaf/solve/azimuth.h"

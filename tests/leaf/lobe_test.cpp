@@ -5,7 +5,7 @@
 #include <boost/math/special_functions/beta.hpp>
 #include <numbers>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 #include "tests/leaf/statistics.h"
 
 namespace frond::leaf {

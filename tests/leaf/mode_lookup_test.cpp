@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "leaf/solve/quadrature.h"
 #include "leaf/solve/solver.h"
 #include "leaf/table/mode_table_file.h"

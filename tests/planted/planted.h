@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/material.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 
 /// Materials that obey the laws, and the same ones with one defect each.
 namespace frond::test {

@@ -1,8 +1,8 @@
 #include "core/plugin_module.h"
 
-/// As if compiled against the headers of another frond: a plug-in. `core/vec.h` is another one there.
+/// As if compiled against the headers of another frond: a plug-in. `core/math/vec.h` is another one there.
 namespace {
-[[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/vec.h 0123456789abcdef";
+[[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/math/vec.h 0123456789abcdef";
 }
 
 const frond::PluginModule* frond_plugin() {

@@ -1,8 +1,8 @@
 #include "image/image_codec.h"
 
-/// The library for image files of another frond. `core/vec.h` is another one there.
+/// The library for image files of another frond. `core/math/vec.h` is another one there.
 namespace {
-[[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/vec.h 0123456789abcdef";
+[[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/math/vec.h 0123456789abcdef";
 }
 
 const frond::ImageCodecModule* frond_image_codec() {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

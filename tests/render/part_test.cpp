@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/log.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "image/image_file.h"
 #include "render/image_output.h"
 #include "render/parts/part_file.h"

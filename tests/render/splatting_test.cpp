@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "instruments/errors/image_error.h"
 #include "render/parts/part_file.h"
 #include "scene/registry.h"

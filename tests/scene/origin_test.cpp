@@ -17,7 +17,7 @@
 #include "scene/geometry/instance_writer.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
-#include "scene/shapes/ply.h"
+#include "shapes/ply.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "core/log.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "scene/format/parser.h"
 #include "tests/support/input_error.h"
 

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "media/sampled_grid.h"
 #include "scene/geometry/geometry.h"
-#include "scene/media/sampled_grid.h"
-#include "scene/shapes/subdivision.h"
-#include "scene/textures/mip_map.h"
+#include "shapes/subdivision.h"
 #include "spectra/color/color_space.h"
 #include "spectra/color/reflectance_table.h"
+#include "textures/mip_map.h"
 
 namespace frond {
 namespace {

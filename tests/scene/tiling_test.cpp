@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/log.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

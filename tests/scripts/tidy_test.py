@@ -18,9 +18,9 @@ class Tidy(FolderTest):
         self.llvm_tool("clang-tidy-14", "14.0.6")
         self.write("leaf/walk.h", "")
         self.write("leaf/walk.cpp", '#include "leaf/walk.h"\n')
-        self.write("core/vec.h", "")
-        self.write("core/ray.h", '#include "core/vec.h"\n')
-        self.write("core/bsdf.cpp", '#include "core/ray.h"\n')
+        self.write("core/math/vec.h", "")
+        self.write("core/math/ray.h", '#include "core/math/vec.h"\n')
+        self.write("core/bsdf.cpp", '#include "core/math/ray.h"\n')
 
     def write(self, name, text):
         path = self.root / "src" / name
@@ -41,7 +41,7 @@ class Tidy(FolderTest):
         self.assertEqual(self.looked_at(), ["src/core/bsdf.cpp", "src/leaf.cpp", "src/leaf/walk.cpp"])
 
     def test_a_header_is_looked_at_by_its_source_or_one_that_includes_it(self):
-        self.assertEqual(self.tidy(self.root / "src/leaf/walk.h", self.root / "src/core/vec.h").returncode, 0)
+        self.assertEqual(self.tidy(self.root / "src/leaf/walk.h", self.root / "src/core/math/vec.h").returncode, 0)
         self.assertEqual(self.looked_at(), ["src/core/bsdf.cpp", "src/leaf/walk.cpp"])
 
     def test_without_words_it_looks_at_what_differs_from_main(self):

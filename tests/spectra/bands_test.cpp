@@ -5,7 +5,7 @@
 #include <fstream>
 #include <set>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "spectra/analytic.h"
 #include "spectra/cie.h"
 #include "spectra/tabulated.h"

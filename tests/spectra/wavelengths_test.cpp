@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "spectra/analytic.h"
 #include "spectra/check_range.h"
 #include "spectra/cie.h"

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/comparison.h"
 #include "tests/stability/specimen.h"

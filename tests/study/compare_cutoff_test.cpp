@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "study/compare/cutoff.h"
 
 namespace frond::compare {

@@ -19,18 +19,20 @@ std::string entry(const std::string& header, size_t zeros = 1) {
 
 TEST(BuildCheck, HeadersThatAreTheSameGo) {
   EXPECT_GT(own_headers().size(), 200u);
-  EXPECT_EQ(problem_of(entry("core/vec.h") + entry("core/light.h", 7) + entry("core/vec.h")), "");
+  EXPECT_EQ(problem_of(entry("core/math/vec.h") + entry("core/light.h", 7) + entry("core/math/vec.h")), "");
 }
 
 TEST(BuildCheck, ThoseThatDifferAreNamedOnce) {
   const std::string zero(1, '\0'), other = " 0123456789abcdef" + zero;
-  EXPECT_EQ(problem_of(entry("core/light.h") + "core/vec.h" + other + "core/vec.h" + other + "core/gone.h" + other),
-            "was compiled from other headers than this frond (core/gone.h, which it has not; core/vec.h)");
+  EXPECT_EQ(
+      problem_of(entry("core/light.h") + "core/math/vec.h" + other + "core/math/vec.h" + other + "core/gone.h" + other),
+      "was compiled from other headers than this frond (core/gone.h, which it has not; core/math/vec.h)");
   std::string many;
-  for (const char* header : {"core/bsdf.h", "core/light.h", "core/film.h", "core/ray.h", "core/shape.h", "core/vec.h"})
+  for (const char* header :
+       {"core/bsdf.h", "core/light.h", "core/film.h", "core/math/ray.h", "core/shape.h", "core/math/vec.h"})
     many += header + other;
   EXPECT_THAT(problem_of(many), EndsWith("core/shape.h; and 1 more)"));
-  EXPECT_THAT(problem_of("core/vec.h" + zero), HasSubstr("(core/vec.h)")) << "without a hash";
+  EXPECT_THAT(problem_of("core/math/vec.h" + zero), HasSubstr("(core/math/vec.h)")) << "without a hash";
 }
 
 TEST(BuildCheck, NoRecordIsNoPermission) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/lights/sky_model.h"
+#include "lights/sky_model.h"
 #include "spectra/cie.h"
 #include "spectra/color/color_space.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "image/image_file.h"
 
 namespace frond::mitsuba {

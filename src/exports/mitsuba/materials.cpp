@@ -5,7 +5,7 @@
 #include "exports/mitsuba/textures.h"
 #include "image/rgb_file.h"
 #include "scene/format/plugin_text.h"
-#include "scene/textures/normal_map.h"
+#include "textures/normal_map.h"
 
 namespace frond::mitsuba {
 namespace {

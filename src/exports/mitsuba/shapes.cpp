@@ -5,7 +5,7 @@
 
 #include "exports/mitsuba/textures.h"
 #include "scene/format/plugin_text.h"
-#include "scene/shapes/ply_writer.h"
+#include "shapes/ply_writer.h"
 
 namespace frond::mitsuba {
 namespace {

@@ -5,8 +5,8 @@
 #include "exports/mitsuba/materials.h"
 #include "exports/mitsuba/textures.h"
 #include "instruments/beam.h"
-#include "scene/textures/normal_map.h"
 #include "spectra/named.h"
+#include "textures/normal_map.h"
 
 namespace frond::mitsuba {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/vec.h"
-#include "scene/math/affine_map.h"
+#include "core/math/affine_map.h"
+#include "core/math/vec.h"
 
 namespace frond::mitsuba {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
-#include "scene/format/tokenizer.h"
+#include "core/units/number.h"
 #include "scene/format/words.h"
 #include "spectra/tabulated.h"
 #include "system/file_uses.h"

@@ -6,10 +6,10 @@
 #include <charconv>
 #include <filesystem>
 
+#include "cameras/films.h"
 #include "core/messages/problems.h"
 #include "jobs/record/common_params.h"
 #include "render/film/adaptive.h"
-#include "scene/cameras/films.h"
 #include "scene/format/words.h"
 #include "spectra/color/color_management.h"
 #include "spectra/color/color_space.h"

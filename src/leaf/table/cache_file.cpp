@@ -1,7 +1,7 @@
 #include "leaf/table/cache_file.h"
 
 #include "core/log.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "system/atomic_file.h"
 #include "system/cache_limit.h"
 #include "system/file_bytes.h"

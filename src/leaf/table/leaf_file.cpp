@@ -5,7 +5,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "leaf/table/exit_weights.h"
 #include "leaf/table/surface_scaling.h"
 #include "leaf/tissue/lobe.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/float4.h"
+#include "core/math/float4.h"
 #include "core/spectrum.h"
 
 namespace frond::leaf {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/float4.h"
+#include "core/math/float4.h"
 #include "leaf/solve/reduced_basis.h"
 #include "leaf/table/mode_table.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/random.h"
+#include "core/math/random.h"
 
 namespace frond::leaf {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "leaf/tissue/lobe_quantiles.h"
 
 namespace frond::leaf {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/float4.h"
+#include "core/math/float4.h"
 
 namespace frond::leaf {
 

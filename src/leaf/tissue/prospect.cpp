@@ -6,7 +6,7 @@
 #include <charconv>
 #include <vector>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "leaf/tissue/absorption.h"
 
 namespace frond::leaf {

@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "core/random.h"
+#include "core/math/random.h"
+#include "core/math/vec.h"
 #include "core/spectrum.h"
-#include "core/vec.h"
 #include "leaf/tissue/tissue.h"
 
 namespace frond::leaf {

@@ -3,8 +3,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/random.h"
-#include "core/vec.h"
+#include "core/math/random.h"
+#include "core/math/vec.h"
 #include "leaf/tissue/fresnel.h"
 #include "leaf/tissue/tissue.h"
 #include "leaf/walk/walk.h"

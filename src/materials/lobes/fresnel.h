@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/float4.h"
+#include "core/math/float4.h"
 #include "core/spectrum.h"
 
 namespace frond {

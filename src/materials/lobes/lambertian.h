@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/bsdf.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 
 namespace frond {
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "leaf/table/mode_lookup.h"
 #include "leaf/table/surface_scaling.h"
 #include "materials/lobes/incident.h"

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "core/random.h"
-#include "core/sampling.h"
-#include "core/vec.h"
+#include "core/math/random.h"
+#include "core/math/sampling.h"
+#include "core/math/vec.h"
 #include "leaf/tissue/lobe.h"
 
 namespace frond {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "leaf/table/lookup.h"
 #include "leaf/table/reciprocal_lookup.h"
 #include "materials/lobes/incident.h"

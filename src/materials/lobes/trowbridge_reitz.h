@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/sampling.h"
-#include "core/vec.h"
+#include "core/math/sampling.h"
+#include "core/math/vec.h"
 
 namespace frond {
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "core/bsdf.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 
 namespace frond {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "materials/measured/nodes.h"
 
 namespace frond {

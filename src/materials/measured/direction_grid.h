@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "core/math/vec.h"
 #include "core/spectrum.h"
-#include "core/vec.h"
 #include "leaf/table/table_axes.h"
 
 namespace frond {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "materials/lobes/active_lanes.h"
 
 namespace frond {

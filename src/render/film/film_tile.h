@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/exact_sum.h"
 #include "core/film.h"
+#include "core/math/exact_sum.h"
 #include "core/wavelengths.h"
 #include "render/film/channels.h"
 #include "render/film/mattes.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/math/vec.h"
 
 namespace frond {
 

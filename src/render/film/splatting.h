@@ -7,7 +7,7 @@
 
 #include "core/film.h"
 #include "core/filter.h"
-#include "core/float4.h"
+#include "core/math/float4.h"
 
 namespace frond {
 

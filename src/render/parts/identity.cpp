@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "render/parts/inputs.h"
 #include "scene/scene_options.h"
 

@@ -5,8 +5,8 @@
 #include <new>
 
 #include "core/error.h"
+#include "core/math/random.h"
 #include "core/parallel.h"
-#include "core/random.h"
 #include "image/image_codec.h"
 #include "scene/plugin_library.h"
 #include "system/file_bytes.h"

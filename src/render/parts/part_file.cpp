@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "core/error.h"
-#include "core/random.h"
+#include "core/math/random.h"
 #include "system/atomic_file.h"
 #include "system/file_bytes.h"
 

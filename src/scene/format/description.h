@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "core/math/affine_map.h"
 #include "core/params.h"
 #include "scene/format/moving_transform.h"
-#include "scene/math/affine_map.h"
 
 namespace frond {
 

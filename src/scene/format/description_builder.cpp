@@ -4,9 +4,9 @@
 #include <cctype>
 
 #include "core/log.h"
+#include "core/math/motion.h"
 #include "scene/format/known_names.h"
 #include "scene/format/plugin_text.h"
-#include "scene/math/motion.h"
 #include "spectra/color/color_space.h"
 
 namespace frond {

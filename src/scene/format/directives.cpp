@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/messages/excerpt.h"
+#include "core/units/number.h"
 
 namespace frond {
 namespace {

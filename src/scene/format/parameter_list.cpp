@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "core/units/number.h"
 
 namespace frond {
 namespace {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "core/log.h"
+#include "core/math/random.h"
 #include "core/parallel.h"
-#include "core/random.h"
 #include "scene/format/description_builder.h"
 #include "scene/format/directives.h"
 #include "system/file_bytes.h"

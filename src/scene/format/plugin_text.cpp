@@ -96,16 +96,6 @@ PluginText parse_plugin_text(const std::string& text, const Location& where) {
   return result;
 }
 
-const Param* find_param(const PluginInfo& info, std::string_view name) {
-  const auto found = std::ranges::find(info.params, name, &Param::name);
-  return found == info.params.end() ? nullptr : &*found;
-}
-
-const ParsedParam* find_param(const std::vector<ParsedParam>& params, std::string_view name) {
-  const auto found = std::ranges::find(params, name, &ParsedParam::name);
-  return found == params.end() ? nullptr : &*found;
-}
-
 /// Used to decide whether two scenes can share an object.
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {

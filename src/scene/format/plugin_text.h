@@ -19,10 +19,6 @@ struct PluginText {
 /// Throws InputError at `where` for text of another form.
 PluginText parse_plugin_text(const std::string& text, const Location& where);
 
-/// Returns the parameter of this name, or nullptr.
-const Param* find_param(const PluginInfo& info, std::string_view name);
-const ParsedParam* find_param(const std::vector<ParsedParam>& params, std::string_view name);
-
 /// Whether two plug-ins have equal names and parameters; locations are ignored.
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/precise_transform.h"
+#include "core/math/precise_transform.h"
 
 namespace frond {
 

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -62,9 +61,5 @@ class Tokenizer {
   Token next_;
   Token last_capital_;  ///< the last word consumed that may be a directive
 };
-
-/// Parses a decimal number as in scene files and PLY. Returns nullopt for other words ("nan", "inf", hexadecimal), and
-/// infinity beyond the range of double.
-std::optional<double> parse_number(std::string_view word);
 
 }  // namespace frond

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <exception>
 
-#include "core/random.h"
+#include "core/math/random.h"
+#include "core/math/vec.h"
 #include "core/texture.h"
-#include "core/vec.h"
 
 // The only file that depends on Embree's version: 3 and 4 differ in include paths, in the default ray mask and in how a
 // query's context is passed.

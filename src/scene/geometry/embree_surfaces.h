@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "core/float4.h"
+#include "core/math/float4.h"
 #include "scene/geometry/embree.h"
 #include "scene/geometry/geometry.h"
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/math/motion.h"
 #include "core/shape.h"
 #include "core/world.h"
 #include "scene/geometry/instance_table.h"
-#include "scene/math/motion.h"
 
 // Forward declarations, so that this header does not require Embree.
 struct RTCDeviceTy;

@@ -8,9 +8,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/random.h"
+#include "core/math/affine_map.h"
+#include "core/math/random.h"
 #include "core/spectrum.h"
-#include "scene/math/affine_map.h"
 
 namespace frond {
 

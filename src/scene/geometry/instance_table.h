@@ -8,10 +8,10 @@
 #include <tuple>
 #include <vector>
 
+#include "core/math/affine_map.h"
+#include "core/math/precise_transform.h"
 #include "core/parallel.h"
-#include "core/precise_transform.h"
 #include "core/texture.h"
-#include "scene/math/affine_map.h"
 
 namespace frond {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/precise_transform.h"
-#include "scene/math/affine_map.h"
+#include "core/math/affine_map.h"
+#include "core/math/precise_transform.h"
 #include "system/atomic_file.h"
 
 namespace frond {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/ray.h"
+#include "core/math/ray.h"
 #include "core/shape.h"
 
 namespace frond {

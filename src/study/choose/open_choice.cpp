@@ -8,7 +8,7 @@
 #include "scene/overrides.h"
 #include "scene/resolver.h"
 #include "scene/scene_options.h"
-#include "scene/textures/normal_map.h"
+#include "textures/normal_map.h"
 
 namespace frond::choose {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "core/random.h"
+#include "core/math/random.h"
 #include "core/stop.h"
 #include "study/choose/pilot_pixels.h"
 #include "system/machine.h"

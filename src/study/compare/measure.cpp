@@ -4,8 +4,8 @@
 #include <bit>
 
 #include "core/log.h"
+#include "core/math/random.h"
 #include "core/messages/counted.h"
-#include "core/random.h"
 #include "instruments/errors/flip.h"
 #include "study/compare/film_images.h"
 #include "study/compare/paper_manner.h"

@@ -1,7 +1,7 @@
 #include <numbers>
 
 #include "core/plugin_module.h"
-#include "core/sampling.h"
+#include "core/math/sampling.h"
 #include "spectra/check_range.h"
 
 namespace soil {
