@@ -91,7 +91,7 @@ python_venv() {
   echo "$wanted" >"$venv/wanted"
 }
 
-# Builds will have the Python module, and an environment that the reports run in; false where PyPI's packages cannot be had.
+# Later builds have the Python module; makes the environment that measurements run in. False where PyPI's packages cannot be had.
 # Mitsuba's LLVM variants, which it is tested with, load libllvm 19.
 with_python_module() {
   python_venv python-venv nanobind==3.1.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 xarray pytest nbclient ipykernel mitsuba==3.9.1 pvlib==0.16.1 reuse==6.2.0 ||
@@ -119,26 +119,4 @@ build_preset() {
 build() {
   echo "Building $*"
   build_preset release --target "$@"
-}
-
-# report NAME WORD...: installs and builds what the reports need, and runs scripts/reports/NAME. report_targets are built for
-# it, report_python runs it.
-report_targets=(frond frond_python frond_python_stub)
-report_python="$root/build/python-venv/bin/python"
-report() {
-  local argument help
-  help=$(sed -n '2,/^[^#]/p' "${BASH_SOURCE[1]}")
-  for argument in "${@:2}"; do  # what the comment at the head of the script does not name is refused before anything else
-    if [[ $argument == --* && $help != *"${argument%%=*}"* && $help != *"[options of frond"* ]]; then
-      echo "usage: scripts/$(basename "${BASH_SOURCE[1]}") --help" >&2
-      exit 1
-    fi
-  done
-  install_missing "${build_packages[@]}" python3-dev
-  if ! with_python_module; then
-    echo "scripts/$(basename "$0") needs packages of PyPI, which cannot be had" >&2
-    exit 1
-  fi
-  [ ${#report_targets[@]} -eq 0 ] || build "${report_targets[@]}"
-  FROND_BUILD="$FROND_BUILD" PYTHONPATH="$FROND_BUILD/python:$root/scripts/reports" exec "$report_python" -B -m "$@"
 }

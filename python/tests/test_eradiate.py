@@ -1,5 +1,5 @@
 """Leaves in Eradiate, run there for real. It brings a Mitsuba of its own, so it is another Python's: FROND_ERADIATE_PYTHON, or that
-of build/eradiate-venv, which scripts/eradiate makes; skipped where there is none."""
+of build/eradiate-venv, which measurements/run eradiate makes; skipped where there is none."""
 
 import os
 import subprocess
@@ -34,7 +34,7 @@ print(float(abs(z).max()))
 def test_a_canopy_has_our_brf():
     python = os.environ.get("FROND_ERADIATE_PYTHON", str(ROOT / "build" / "eradiate-venv" / "bin" / "python"))
     if not os.path.exists(python):
-        pytest.skip("Eradiate is not installed: scripts/eradiate does")
+        pytest.skip("Eradiate is not installed: measurements/run eradiate does")
     paths = [*sys.path[:1], os.environ.get("FROND_PYTHON_PATH", str(ROOT / "build/release/python")), str(ROOT / "scripts" / "reports")]
     found = subprocess.run([python, "-c", CODE], capture_output=True, text=True, env=dict(os.environ, PYTHONPATH=os.pathsep.join(paths)))
     assert found.returncode == 0, found.stderr

@@ -219,7 +219,7 @@ Shape "bilinearmesh" "point3 P" [ 0 0 0  1 0 0  0 1 0  1 1 0 ]
 
 
 def test_a_turbid_medium_has_the_brf_of_the_transfer_equation(tmp_path):
-    """Against a solution by doubling, which shares no code with frond (scripts/reports/turbid.py). 5 standard errors."""
+    """Against a solution by doubling, which shares no code with frond (measurements/shared/turbid.py). 5 standard errors."""
     sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts" / "reports"))
     from turbid import turbid_layer
     (tmp_path / "turbid.pbrt").write_text(TURBID)

@@ -14,9 +14,9 @@ def test_the_map_of_a_photo_is_the_known_one(tmp_path, monkeypatch):
     pytest.importorskip("numpy")
     pytest.importorskip("PIL")
     pytest.importorskip("pandas")
-    monkeypatch.setattr(sys, "path", [str(ROOT / "scripts" / "reports"), *sys.path])
+    monkeypatch.setattr(sys, "path", [str(ROOT), *sys.path])
     monkeypatch.setenv("PATH", f"{Path(os.environ['FROND']).parent}:{os.environ['PATH']}")
-    import shot  # scripts/reports
+    from measurements import shot
 
     for name in ("scenes", "examples"):
         (tmp_path / name).symlink_to(ROOT / name)

@@ -189,7 +189,7 @@ class LatticeSampler final : public SamplerBase {
 
   /// Factors of the dimensions, by Dimension, that form one lattice together; 0 for all others, which shuffle the
   /// samples. From searches for a small variance of random half-spaces of two and three pairs, and where the pair of
-  /// the light or of the direction is drawn twice for each sample (scripts/lattice).
+  /// the light or of the direction is drawn twice for each sample (measurements/run lattice).
   static constexpr uint32_t factor(uint32_t dimension) {
     constexpr uint32_t kFilm = 1, kLens = 409, kTime = 2491, kOnLight = 887, kDirection = 6595;
     constexpr uint32_t kFactors[] = {0, kFilm, kLens, kTime, 0, kOnLight, 0, kDirection};

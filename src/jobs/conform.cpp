@@ -14,7 +14,7 @@
 
 namespace frond {
 
-// `frond conform`: statistical and exact tests of the laws that every BSDF must have (docs/validation.md).
+// `frond conform`: statistical and exact tests of the laws that every BSDF must have (docs/results/validation.md).
 
 namespace {
 

@@ -86,12 +86,12 @@ TEST(BenchCommand, TheSameCountersForTheSameSeed) {
   EXPECT_NE(variance("1"), variance("2"));
 }
 
-TEST(BenchCommand, ScriptsCompareItsFiles) {
+TEST(BenchCommand, MeasurementsCompareItsFiles) {
   const TestFolder folder("bench");
   const std::string a = folder.name_of("a.json"), b = folder.name_of("b.json"), page = folder.name_of("page.html");
   for (const std::string& file : {a, b})
     ASSERT_EQ(bench({"diffuse", "--angles", "0", "--lanes", "3", "--json", file, "-q"}).code, 0);
-  const auto done = run_child({FROND_SOURCE_DIR "/scripts/bench", "--compare", a, b, "-o", page}, "");
+  const auto done = run_child({FROND_SOURCE_DIR "/measurements/run", "bench", "--compare", a, b, "-o", page}, "");
   ASSERT_TRUE(done);
   EXPECT_EQ(done->status, 0) << done->err;
   EXPECT_THAT(bytes_of(page),

@@ -26,7 +26,7 @@ def module(name):
     python = VENV / "bin" / "python"
     has = lambda: python.exists() and subprocess.run([python, "-c", f"import {name}"], capture_output=True,
                                                      check=False).returncode == 0
-    if not has() and name != "bpy":  # 370 MB: scripts/exports installs it
+    if not has() and name != "bpy":  # 370 MB: measurements/run exports installs it
         subprocess.run([sys.executable, "-m", "venv", VENV], capture_output=True, check=False)
         subprocess.run([python, "-m", "pip", "install", "-q", name], capture_output=True, check=False)
     if not has():

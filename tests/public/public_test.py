@@ -2,7 +2,7 @@
 
 public_test.py                    all cases
 public_test.py CASE...            these
-public_test.py --write-page       writes the table of docs/public_cases.md
+public_test.py --write-page       writes the table of docs/results/public_cases.md
 
 FROND names the program.
 """
@@ -20,7 +20,7 @@ import tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
 FROND = pathlib.Path(os.environ.get("FROND", HERE.parents[1] / "build" / "release" / "frond")).resolve()
-PAGE = HERE.parents[1] / "docs" / "public_cases.md"
+PAGE = HERE.parents[1] / "docs" / "results" / "public_cases.md"
 HEAD_OF_TABLE = "| case | what is right | report | state |"
 CASE_KEYS = {"about", "reports", "not_met", "needs", "today", "steps"}
 STEP_KEYS = {"command", "exit", "says", "never_says", "values", "absent"}
@@ -128,13 +128,13 @@ def lacks(case):
 
 
 def page_of(cases):
-    """docs/public_cases.md with its table, which ends the page, made anew."""
+    """docs/results/public_cases.md with its table, which ends the page, made anew."""
     lines = [HEAD_OF_TABLE, "|---|---|---|---|"]
     for case in cases:
         links = ", ".join(f"[{number}]({link})" if link.startswith("http") else link
                           for number, link in enumerate(case.record["reports"], 1))
         state = f"not met: {case.record['not_met']}" if "not_met" in case.record else "met"
-        lines.append(f"| [{case.name}](../tests/public/{case.name}/case.toml) | {case.record['about'].strip()} | {links} | {state} |")
+        lines.append(f"| [{case.name}](../../tests/public/{case.name}/case.toml) | {case.record['about'].strip()} | {links} | {state} |")
     return PAGE.read_text().partition(HEAD_OF_TABLE)[0] + "\n".join(lines) + "\n"
 
 
@@ -167,7 +167,7 @@ def main(words):
             print(f"{case.name}: is met: remove \"not_met\" and \"today\" from its case.toml")
     if not words and page_of(cases) != PAGE.read_text():
         failed.append(PAGE.name)
-        print("docs/public_cases.md does not have the table of these cases: run scripts/generate")
+        print("docs/results/public_cases.md does not have the table of these cases: run scripts/generate")
     print(f"{passed} passed, {len(failed)} failed, {left_out} skipped")
     return 1 if failed or passed == 0 else 0
 

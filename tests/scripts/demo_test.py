@@ -20,7 +20,7 @@ class Costs(unittest.TestCase):
             csv, rays = pathlib.Path(folder) / "compare.csv", pathlib.Path(folder) / "rays"
             other = lines[0].replace("all,rgb", "leaf,rgb").replace("0.0", "0.9")  # other pixels do not count
             csv.write_text("\n".join(("# frond", COLUMNS, other, *lines)) + "\n")
-            r = subprocess.run(["awk", "-F,", "-v", "scene=front", "-v", f"rays={rays}", "-f", ROOT / "scripts/reports/demo_costs.awk", csv],
+            r = subprocess.run(["awk", "-F,", "-v", "scene=front", "-v", f"rays={rays}", "-f", ROOT / "scripts/demo_costs.awk", csv],
                                capture_output=True, text=True, check=True)
             self.assertEqual(r.stderr, "")
             return [line.split(maxsplit=2) for line in r.stdout.splitlines()], rays.read_text()

@@ -12,7 +12,7 @@ LINK = re.compile(r"\]\((?!https?://|#)([^)#\s]+)")
 class Pages(unittest.TestCase):
     def test_every_page_is_in_the_navigation(self):
         navigation = set(re.findall(r"- (?:[\w ]+: )?(\S+\.md)$", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"), re.M))
-        pages = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")}
+        pages = {str(page.relative_to(ROOT)) for page in (ROOT / "docs").rglob("*.md")}
         self.assertEqual(navigation, pages | {"README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"})
 
     def test_the_site_loads_nothing_from_elsewhere(self):
@@ -24,14 +24,14 @@ class Pages(unittest.TestCase):
         self.assertNotRegex(settings, r"https?://")
 
     def test_links_lead_to_files(self):
-        for page in [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "scenes").rglob("*.md")]:
+        for page in [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "scenes").rglob("*.md")]:
             text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
             text = re.sub(r"`[^`\n]*`", "", text)
             for target in LINK.findall(text):
                 self.assertTrue((page.parent / target).exists(), f"{page}: {target}")
 
     def test_output_follows_the_commands_that_print_it(self):
-        for page in (ROOT / "docs").glob("*.md"):
+        for page in (ROOT / "docs").rglob("*.md"):
             blocks = re.findall(r"^```(\w*)\n(?:(?!```).*\n)*```$", page.read_text(encoding="utf-8"), re.M)
             for before, language in zip([None, *blocks], blocks):
                 if language == "output":

@@ -24,7 +24,7 @@ class Tidy(FolderTest):
 
     def write(self, name, text):
         path = self.root / "src" / name
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
 
     def tidy(self, *words):

@@ -13,7 +13,7 @@ For readers who need to know what frond's leaf methods, its sky and its media do
 angles and with wrong input.
 
 ```sh
-scripts/stability
+measurements/run stability
 ```
 
 The command runs every case and writes this page. `frond_stability`, one of the tests, runs the same cases and fails
@@ -52,7 +52,7 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"table file", "material `leaf_simplified` with `tablefile`"},
     {"solved leaf",
      "material `leaf_solved`, f integrated over all directions: R and T within its tolerance, 5e-4 "
-     "([leaf models](leaf_models.md))"},
+     "([leaf models](../leaf_models.md))"},
     {"solved f",
      "material `leaf_solved`, pi f by direction, against a mode table of twice the nodes solved at these angles"},
     {"lambert", "material `leaf_lambert`, R and T with `incidence` set to each angle of the case up to 89 degrees"},

@@ -81,7 +81,7 @@ std::vector<std::string> surprises(const std::vector<Theme>& themes);
 /// One line for each cell, for a terminal.
 std::string to_text(const std::vector<Theme>& themes);
 
-/// docs/stability.md: its introduction, and a table for each theme.
+/// docs/results/stability.md: its introduction, and a table for each theme.
 std::string to_markdown(const std::vector<Theme>& themes);
 
 }  // namespace frond::stability

@@ -59,7 +59,7 @@ Theme tails() {
       "Sample weights",
       "Weights f |cos| / pdf of a million samples at 551 nm, for paths that arrive uniformly from all directions. "
       "With \"incident\" \"light\", f grows like 1 / cos toward grazing views and the squared weight has no finite "
-      "mean: the noise of images with light between leaves does not converge ([leaf models](leaf_models.md))."};
+      "mean: the noise of images with light between leaves does not converge ([leaf models](../leaf_models.md))."};
   for (const std::string specimen : {"soybean", "maize"})
     for (const std::string incident : {"traced", "light", "reciprocal"}) {
       const bool settles = incident != "light";

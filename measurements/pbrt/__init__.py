@@ -1,0 +1,1 @@
+"""Compares frond with pbrt-v4."""

@@ -1,0 +1,1 @@
+"""Code that several measurements use."""

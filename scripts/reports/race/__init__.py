@@ -1,1 +1,0 @@
-"""scripts/race: compares frond with other renderers on scenes that all of them can render."""
