@@ -86,7 +86,7 @@ void at(benchmark::State& state, std::string (*medium)()) {
   RandomStream rng(1);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        ball.medium().at(Vec3{rng.uniform(), rng.uniform(), rng.uniform()} * 2 + Vec3{-1, -1, -1}, lambda));
+        ball.medium().properties(Vec3{rng.uniform(), rng.uniform(), rng.uniform()} * 2 + Vec3{-1, -1, -1}, lambda));
 }
 
 void along(benchmark::State& state, std::string (*medium)()) {
@@ -95,7 +95,7 @@ void along(benchmark::State& state, std::string (*medium)()) {
   RandomStream rng(1);
   for (auto _ : state) {
     const Vec3 d = normalize(Vec3{rng.uniform() - 0.5f, rng.uniform() - 0.5f, 1});
-    MajorantSteps steps = ball.medium().along({d * -3.f, d, 6}, lambda);
+    MajorantSteps steps = ball.medium().majorants({d * -3.f, d, 6}, lambda);
     MajorantSteps::Step step;
     while (steps.next(step)) benchmark::DoNotOptimize(step);
   }

@@ -39,7 +39,7 @@ void call_light(benchmark::State& state, const Call& call) {
 
 void sample(benchmark::State& state) {
   call_light(state, [](const EnvironmentLight& light, Vec2 u, const SampledWavelengths& lambda) {
-    benchmark::DoNotOptimize(light.sample_competing({}, u, lambda));
+    benchmark::DoNotOptimize(light.sample_compensated({}, u, lambda));
   });
 }
 

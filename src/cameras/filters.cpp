@@ -31,7 +31,9 @@ class ProductFilter : public Filter {
   }
   bool stays_in_pixel() const final { return radius_.x <= 0.5f && radius_.y <= 0.5f; }
   Vec2 radius() const final { return radius_; }
-  Vec2 along(Vec2 offset) const final { return {along(offset.x, radius_.x), along(offset.y, radius_.y)}; }
+  Vec2 evaluate_axes(Vec2 offset) const final {
+    return {evaluate_axis(offset.x, radius_.x), evaluate_axis(offset.y, radius_.y)};
+  }
   std::optional<Reconstruction> reconstruction() const final { return reconstruction_; }
 
  protected:
@@ -40,7 +42,7 @@ class ProductFilter : public Filter {
 
  private:
   /// Returns the value along one axis; 0 beyond the radius.
-  float along(float offset, float radius) const {
+  float evaluate_axis(float offset, float radius) const {
     return std::abs(offset) > radius ? 0 : float(value(double(offset), double(radius)));
   }
   Vec2 radius_;

@@ -173,8 +173,8 @@ class LatticeSampler final : public SamplerBase {
     // pixel, for all n.
     constexpr uint32_t kSecond = 0x4da614d3;
     // A factor of all joint dimensions: 2^n samples remain the same points, in another order. With bands, a wavelength
-    // has every 2^k-th sample (sample_in_turn), whose radical inverses lie in one interval of length 2^-k; this factor
-    // spreads them over the whole lattice. From a search for a small variance of edges by such samples.
+    // has every 2^k-th sample (sample_for_index), whose radical inverses lie in one interval of length 2^-k; this
+    // factor spreads them over the whole lattice. From a search for a small variance of edges by such samples.
     constexpr uint32_t kReorder = 0x9154fa29;
     const uint64_t pixel = sample_key(seed(), samples.x, samples.y, sequence);
     const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), shifts = mix64(key);

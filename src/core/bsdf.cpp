@@ -14,7 +14,7 @@ Scattered scatter_one(const Bsdf& bsdf, bool from_light, const Vec3& incident, R
   if (!s) return {};
   const bool turn_round = from_light && !any(s->flags & Lobes::specular);
   assert(!turn_round || !s->pdf_is_approximate);
-  const SampledSpectrum f = turn_round ? bsdf.f(s->wi, incident, rng) : s->f * power_of_radiance(bsdf, incident, s->wi);
+  const SampledSpectrum f = turn_round ? bsdf.f(s->wi, incident, rng) : s->f * radiance_to_power(bsdf, incident, s->wi);
   return {s->wi, s->flags, f * (std::abs(s->wi.z) / s->pdf)};
 }
 

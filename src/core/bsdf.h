@@ -101,7 +101,7 @@ inline bool same_side(const Vec3& a, const Vec3& b) { return a.z * b.z > 0; }
 
 /// Factor that converts `f`, which applies to radiance, to transport of power: (n_i / n_o)^2, lane by lane, if wo and
 /// wi lie on different sides, else 1.
-inline SampledSpectrum power_of_radiance(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
+inline SampledSpectrum radiance_to_power(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
   if (wo.z * wi.z >= 0) return SampledSpectrum(1);
   const SampledSpectrum ratio = bsdf.index_ratio();
   const SampledSpectrum square = ratio * ratio;

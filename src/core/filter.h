@@ -32,7 +32,7 @@ class Filter {
   virtual Vec2 radius() const { return {}; }
   /// The two factors of a separable filter, f_x(offset.x) and f_y(offset.y), up to a constant; `offset` is from the
   /// pixel's centre, in pixels. They are 0 beyond the radius.
-  virtual Vec2 along(Vec2 /*offset*/) const { return {}; }
+  virtual Vec2 evaluate_axes(Vec2 /*offset*/) const { return {}; }
   /// Reconstruction that the scene file states; if it is empty, the renderer selects the one with less noise.
   virtual std::optional<Reconstruction> reconstruction() const { return {}; }
 };

@@ -34,11 +34,11 @@ class Light {
   virtual ~Light() = default;
   /// Samples the light that arrives at `p`, in world space, for a uniform `u` in [0, 1)^2; empty if none arrives.
   virtual std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const = 0;
-  /// Share of the light's power that `sample_competing` covers. With 0 the light is found by scattered rays alone.
-  virtual double competing_share() const { return 1; }
+  /// Share of the light's power that `sample_compensated` covers. With 0 the light is found by scattered rays alone.
+  virtual double compensated_share() const { return 1; }
   /// Like `sample`, for multiple importance sampling with scattered rays: its density may leave out light that these
   /// find as well (MIS compensation, Karlik et al. 2019).
-  virtual std::optional<LightSample> sample_competing(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const {
+  virtual std::optional<LightSample> sample_compensated(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const {
     return sample(p, u, lambda);
   }
   /// True for light through a point or from a single direction, which no scattered ray meets.
@@ -114,7 +114,7 @@ class EmittingSurface {
   /// Bounds of its points and normals; one-sided.
   virtual LightBounds bounds() const = 0;
   /// True if rays can hit it. They cannot if alpha is 0: then all of its light comes from samples, as in pbrt-v4.
-  virtual bool is_met() const = 0;
+  virtual bool is_intersectable() const = 0;
   /// Factor by which alpha scales the light of a point that is hit or sampled.
   virtual float opacity(const EmittingPoint& at) const = 0;
 };
@@ -126,7 +126,7 @@ class AreaEmission {
   /// True if each face of a shape becomes a light, as in pbrt-v4 if a total power is stated; else each shape does.
   virtual bool is_by_face() const = 0;
   /// Returns the light of a surface, not null. The area of the surface is above 0.
-  virtual std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const = 0;
+  virtual std::unique_ptr<AreaLight> make_area_light(std::unique_ptr<const EmittingSurface> surface) const = 0;
 };
 
 /// Plug-in record of an area light.
@@ -143,8 +143,8 @@ class EnvironmentLight : public Light {
   virtual SampledSpectrum radiance(const Vec3& from, const Vec3& direction, const SampledWavelengths& lambda) const = 0;
   /// Density of `sample` at `from` for `direction`, per solid angle.
   virtual float pdf(const Vec3& from, const Vec3& direction) const = 0;
-  /// Density of `sample_competing`, per solid angle.
-  virtual float competing_pdf(const Vec3& from, const Vec3& direction) const { return pdf(from, direction); }
+  /// Density of `sample_compensated`, per solid angle.
+  virtual float compensated_pdf(const Vec3& from, const Vec3& direction) const { return pdf(from, direction); }
 };
 
 }  // namespace frond

@@ -5,7 +5,7 @@
 
 namespace frond {
 
-void MajorantGrid::raise(const Vec3& low, const Vec3& high, float density) {
+void MajorantGrid::raise_bound(const Vec3& low, const Vec3& high, float density) {
   std::array<int, 3> first, last, c;
   const auto cell = [this](float share) { return int(std::clamp(std::floor(share * float(n_)), 0.f, float(n_ - 1))); };
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +52,7 @@ bool MajorantSteps::next(Step& step) {
   return true;
 }
 
-Vec3 MediumBox::share(const Vec3& local) const {
+Vec3 MediumBox::local_to_unit(const Vec3& local) const {
   const Vec3 from = local - bounds_.min, size = bounds_.max - bounds_.min;
   return {from.x / size.x, from.y / size.y, from.z / size.z};
 }

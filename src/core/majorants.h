@@ -19,7 +19,7 @@ class MajorantGrid {
   float at(const std::array<int, 3>& cell) const { return cells_[index(cell)]; }
   /// Raises the bound of the cells that the box from `low` to `high` overlaps; coordinates are shares of the grid's
   /// box.
-  void raise(const Vec3& low, const Vec3& high, float density);
+  void raise_bound(const Vec3& low, const Vec3& high, float density);
 
  private:
   size_t index(const std::array<int, 3>& c) const {
@@ -65,10 +65,10 @@ class MediumBox {
 
   const Bounds& bounds() const { return bounds_; }
   /// Transforms a point from world space to the medium's coordinates.
-  Vec3 local(const Vec3& p) const { return medium_from_world_.point(p); }
+  Vec3 world_to_local(const Vec3& p) const { return medium_from_world_.point(p); }
   /// Position of a point of world space in the box: each coordinate is 0 to 1 within.
-  Vec3 unit(const Vec3& p) const { return share(local(p)); }
-  Vec3 share(const Vec3& local) const;
+  Vec3 world_to_unit(const Vec3& p) const { return local_to_unit(world_to_local(p)); }
+  Vec3 local_to_unit(const Vec3& local) const;
   /// Pieces of a ray of world space inside the box: one if `grid` is nullptr. `sigma` is the extinction coefficient at
   /// density 1.
   MajorantSteps steps(const Ray& ray, const MajorantGrid* grid, const SampledSpectrum& sigma) const {

@@ -88,7 +88,7 @@ struct LeafModel {
   bool is_exact = false;            ///< the mean of its BSDF is the mean of the reference's
   bool is_noisy = false;            ///< its BSDF is a random estimate
   double cost = 0;  ///< CPU time of a path, with `quiet`, relative to leaf_lambert (docs/selection.md); above 0
-  bool takes_wall_textures = false;  ///< textures may give the aspect ratios of inner walls
+  bool accepts_wall_textures = false;  ///< textures may give the aspect ratios of inner walls
   Table table = Table::none;
   Variant quiet = {};    ///< empty: none
   bool is_open = false;  ///< no model: the renderer replaces it by one; then no other member has a meaning

@@ -20,10 +20,10 @@ struct MediumPoint {
 class Medium {
  public:
   virtual ~Medium() = default;
-  virtual MediumPoint at(const Vec3& p, const SampledWavelengths& lambda) const = 0;
+  virtual MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const = 0;
   /// Majorants along a ray of unit direction, from its origin to `ray.t_max`, in order. Where there is no piece, the
   /// medium is empty. sigma_a + sigma_s of any point of a piece must not exceed its majorant.
-  virtual MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const = 0;
+  virtual MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const = 0;
   /// True if the medium is the same everywhere; then the majorants are its extinction coefficient.
   virtual bool is_homogeneous() const { return false; }
   virtual bool is_emissive() const { return false; }

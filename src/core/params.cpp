@@ -40,7 +40,7 @@ const KindTraits& traits(ParamKind kind) {
   return table[static_cast<size_t>(kind)];
 }
 
-bool takes(const PluginInfo& info, const ParsedParam& given) {
+bool accepts(const PluginInfo& info, const ParsedParam& given) {
   const auto declared = std::ranges::find(info.params, given.name, &Param::name);
   if (declared == info.params.end()) return false;
   const auto& types = traits(declared->kind).types;
@@ -57,8 +57,10 @@ size_t value_count(const ParsedParam& p) {
   return std::visit([](const auto& v) { return v.size(); }, p.values);
 }
 
-const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
-const std::vector<std::string>& words(const ParsedParam& p) { return std::get<std::vector<std::string>>(p.values); }
+const std::vector<double>& number_values(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
+const std::vector<std::string>& string_values(const ParsedParam& p) {
+  return std::get<std::vector<std::string>>(p.values);
+}
 
 Vec3 vec3_at(const std::vector<double>& v, size_t i) {
   return {static_cast<float>(v[i]), static_cast<float>(v[i + 1]), static_cast<float>(v[i + 2])};
@@ -179,7 +181,7 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
     : info_(info), parsed_(parsed), resolver_(resolver), read_(info.params.size(), false) {
   std::vector<std::string_view> names;
   for (const Param& p : info_.params) names.push_back(p.name);
-  std::erase_if(parsed_.params, [&](const ParsedParam& p) { return p.may_be_unused && !takes(info_, p); });
+  std::erase_if(parsed_.params, [&](const ParsedParam& p) { return p.may_be_unused && !accepts(info_, p); });
   for (size_t i = 0; i < parsed_.params.size(); ++i) {
     const ParsedParam& p = parsed_.params[i];
     const auto declared = std::find(names.begin(), names.end(), p.name);
@@ -240,7 +242,7 @@ void Params::check(const Param& declared, const ParsedParam& p) const {
           fail(p.value_where, "\"{}\" is an integer, {} was given", p.name, x);
   }
   if (!declared.choices.empty())
-    for (const std::string& word : words(p))
+    for (const std::string& word : string_values(p))
       if (std::find(declared.choices.begin(), declared.choices.end(), word) == declared.choices.end())
         fail(p.value_where, "\"{}\" is one of {}, \"{}\" was given", p.name, fmt::join(declared.choices, ", "), word);
 }
@@ -290,17 +292,17 @@ bool Params::boolean(std::string_view name) const {
 
 int Params::integer(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? static_cast<int>(numbers(*parsed)[0]) : value_by_default<int>(info_, declared);
+  return parsed ? static_cast<int>(number_values(*parsed)[0]) : value_by_default<int>(info_, declared);
 }
 
 double Params::real(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? numbers(*parsed)[0] : number_by_default(info_, declared);
+  return parsed ? number_values(*parsed)[0] : number_by_default(info_, declared);
 }
 
 std::string Params::string(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? words(*parsed)[0] : std::string(value_by_default<std::string_view>(info_, declared));
+  return parsed ? string_values(*parsed)[0] : std::string(value_by_default<std::string_view>(info_, declared));
 }
 
 Vec2 Params::vec2(std::string_view name) const {
@@ -312,7 +314,7 @@ Vec3 Params::vec3(std::string_view name) const { return vec3_at(reals(name), 0);
 
 std::vector<double> Params::reals(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  if (parsed) return numbers(*parsed);
+  if (parsed) return number_values(*parsed);
   if (const auto* v = std::get_if<std::array<double, 3>>(&declared.default_value)) return {v->begin(), v->end()};
   return {};
 }
@@ -332,7 +334,7 @@ std::string Params::color_space(std::string_view name) const {
 
 std::vector<std::string> Params::strings(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? words(*parsed) : std::vector<std::string>();
+  return parsed ? string_values(*parsed) : std::vector<std::string>();
 }
 
 std::vector<Vec2> Params::vec2s(std::string_view name) const {
@@ -409,8 +411,8 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
 
 std::shared_ptr<const FloatTexture> Params::float_texture(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  if (is_texture(name)) return texture_in_range(resolver_, declared, words(*parsed)[0], parsed->value_where);
-  const double value = parsed ? numbers(*parsed)[0] : number_by_default(info_, declared);
+  if (is_texture(name)) return texture_in_range(resolver_, declared, string_values(*parsed)[0], parsed->value_where);
+  const double value = parsed ? number_values(*parsed)[0] : number_by_default(info_, declared);
   return std::make_shared<ConstantFloatTexture>(static_cast<float>(value));
 }
 
@@ -418,10 +420,10 @@ std::vector<std::shared_ptr<const FloatTexture>> Params::float_textures(std::str
   const auto [declared, parsed] = find(name);
   std::vector<std::shared_ptr<const FloatTexture>> result;
   if (is_texture(name))
-    for (const std::string& word : words(*parsed))
+    for (const std::string& word : string_values(*parsed))
       result.push_back(texture_in_range(resolver_, declared, word, parsed->value_where));
   else if (parsed)
-    for (const double x : numbers(*parsed)) result.push_back(std::make_shared<ConstantFloatTexture>(float(x)));
+    for (const double x : number_values(*parsed)) result.push_back(std::make_shared<ConstantFloatTexture>(float(x)));
   return result;
 }
 
@@ -432,7 +434,8 @@ bool Params::is_texture(std::string_view name) const {
 
 std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  if (parsed && parsed->type == "texture") return resolver_.spectrum_texture(words(*parsed)[0], parsed->value_where);
+  if (parsed && parsed->type == "texture")
+    return resolver_.spectrum_texture(string_values(*parsed)[0], parsed->value_where);
   const ParsedParam& value = parsed ? *parsed : default_spectrum(info_, declared, parsed_.where);
   return std::make_shared<ConstantSpectrumTexture>(resolver_.spectrum(value, SpectrumUse::albedo));
 }
@@ -449,7 +452,7 @@ std::vector<std::shared_ptr<Material>> Params::materials(std::string_view name) 
   const auto [declared, parsed] = find(name);
   std::vector<std::shared_ptr<Material>> result;
   if (parsed)
-    for (const std::string& material : words(*parsed))
+    for (const std::string& material : string_values(*parsed))
       result.push_back(resolver_.material(material, parsed->value_where));
   return result;
 }

@@ -18,22 +18,22 @@ class Phase {
   static Phase henyey_greenstein(float g) { return {false, std::clamp(g, -0.99f, 0.99f), {}}; }
   /// Bi-Lambertian leaves whose normals point in all directions alike (Ross 1981, The Radiation Regime and Architecture
   /// of Plant Stands). `reflected`: R / (R + T), the share of scattered light that leaves on the side it came from.
-  static Phase of_leaves(const SampledSpectrum& reflected) { return {true, 0, reflected}; }
+  static Phase bi_lambertian(const SampledSpectrum& reflected) { return {true, 0, reflected}; }
 
   /// Density, 1/sr, in each lane for the cosine of the angle between the two directions.
   SampledSpectrum value(float cosine) const {
-    if (!is_of_leaves_) return SampledSpectrum(henyey_greenstein(cosine, g_));
-    const float back = of_reflection(cosine), front = of_reflection(-cosine);
+    if (!is_bi_lambertian_) return SampledSpectrum(henyey_greenstein(cosine, g_));
+    const float back = reflection_density(cosine), front = reflection_density(-cosine);
     return SampledSpectrum(front) + reflected_ * (back - front);
   }
   /// Samples a direction with the density of lane `lane`. `w` is the direction before.
   Vec3 sample(const Vec3& w, int lane, Vec2 u, RandomStream& rng) const {
-    return is_of_leaves_ ? sample_leaf(w, lane, u, rng) : sample_henyey_greenstein(w, u);
+    return is_bi_lambertian_ ? sample_leaf(w, lane, u, rng) : sample_henyey_greenstein(w, u);
   }
 
  private:
-  Phase(bool is_of_leaves, float g, const SampledSpectrum& reflected)
-      : is_of_leaves_(is_of_leaves), g_(g), reflected_(reflected) {}
+  Phase(bool is_bi_lambertian, float g, const SampledSpectrum& reflected)
+      : is_bi_lambertian_(is_bi_lambertian), g_(g), reflected_(reflected) {}
 
   static float henyey_greenstein(float cosine, float g) {
     const float base = std::max(1 + g * g - 2 * g * cosine, 1e-8f);
@@ -49,7 +49,7 @@ class Phase {
     return Frame::around(w).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
   }
   /// Density of leaves that only reflect: 2 (sin b - b cos b) / (3 pi^2) for the angle b.
-  static float of_reflection(float cosine) {
+  static float reflection_density(float cosine) {
     const float c = std::clamp(cosine, -1.f, 1.f);
     return 2 / (3 * kPi * kPi) * (std::sqrt(1 - c * c) - std::acos(c) * c);
   }
@@ -61,7 +61,7 @@ class Phase {
     return Frame::around(is_reflected ? normal : -normal).to_world(sample_cosine_hemisphere(u));
   }
 
-  bool is_of_leaves_;
+  bool is_bi_lambertian_;
   float g_;
   SampledSpectrum reflected_;
 };

@@ -36,7 +36,7 @@ inline const ParsedParam* find_param(std::span<const ParsedParam> params, std::s
 /// Returns the result of `make()`. InputError and Stopped pass through; any other exception, and a null pointer as
 /// result, become an InputError at `where` that names the plug-in.
 template <class Make>
-auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
+auto make_checked(const PluginInfo& info, const Location& where, const Make& make) {
   const auto attempt = [&] {
     try {
       return make();

@@ -25,7 +25,7 @@ struct TriangleMesh {
   std::vector<std::array<uint32_t, 3>> triangles;  ///< indices of vertices
   /// For each triangle, whether orient_mesh exchanged its second and third vertex. It is empty if no triangle was
   /// exchanged or if the mesh has texture coordinates.
-  std::vector<bool> turned = {};
+  std::vector<bool> flipped = {};
   /// Triangles from this index on are halves of quadrilaterals, in pairs: vertices 0 1 2 and 0 2 3.
   size_t halves_from = SIZE_MAX;
 };
@@ -138,8 +138,8 @@ inline void orient_mesh(TriangleMesh& mesh, const ShapePlacement& placement) {
     if (!(agreement == 0 ? flip_winding : agreement < 0)) continue;
     std::swap(t[1], t[2]);
     if (!mesh.uv.empty()) continue;
-    mesh.turned.resize(mesh.triangles.size());
-    mesh.turned[i] = true;
+    mesh.flipped.resize(mesh.triangles.size());
+    mesh.flipped[i] = true;
   }
 }
 

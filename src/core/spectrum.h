@@ -83,12 +83,12 @@ class Spectrum {
   virtual float max_value() const = 0;
 
   /// Values at the wavelengths of a path. Classes evaluated at every hit override it: one virtual call, not four.
-  virtual SampledSpectrum sample(const SampledWavelengths& lambda) const { return sample_by(*this, lambda); }
+  virtual SampledSpectrum sample(const SampledWavelengths& lambda) const { return sample_lanes(*this, lambda); }
 
  protected:
   /// Calls `at` of class T for each lane; if T is final, the calls are not virtual.
   template <class T>
-  static SampledSpectrum sample_by(const T& spectrum, const SampledWavelengths& lambda) {
+  static SampledSpectrum sample_lanes(const T& spectrum, const SampledWavelengths& lambda) {
     SampledSpectrum s;
     for (int i = 0; i < lambda.count; ++i) s[i] = spectrum.at(lambda.nm[static_cast<size_t>(i)]);
     return s;

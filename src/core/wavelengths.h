@@ -50,7 +50,7 @@ class WavelengthStrategy {
   /// Wavelengths of sample `index` of a pixel, with SampledWavelengths::hero if one lane's wavelength alone has all of
   /// the distribution of `sample`. A strategy with more bands than a path has lanes assigns them in turn:
   /// consecutive samples cover all bands evenly.
-  virtual SampledWavelengths sample_in_turn([[maybe_unused]] uint64_t index, float u) const { return sample(u); }
+  virtual SampledWavelengths sample_for_index([[maybe_unused]] uint64_t index, float u) const { return sample(u); }
   /// Interval that contains all wavelengths that `sample` can return (nm).
   virtual Interval range_nm() const = 0;
   /// Wavelengths (nm) of a strategy whose paths all carry the same ones; empty if they vary from path to path.

@@ -221,7 +221,7 @@ std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<boo
 void warn_of_steps(const PlantGeometry& geometry, const Log& log) {
   constexpr double kVisible = 1. / 2048;
   const double reach = std::max(largest_coordinate(geometry.least), largest_coordinate(geometry.most));
-  const double step = float_step(reach);
+  const double step = float_spacing(reach);
   if (reach <= kFar || step < kVisible * largest_coordinate(geometry.most - geometry.least)) return;
   log.warn({},
            fmt::format("its coordinates are 32-bit floats up to {:.3g} units from the origin, where their step is {:g} "

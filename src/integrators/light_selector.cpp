@@ -31,7 +31,7 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
   StopPoll poll;
   for (size_t i = 0; i < lights_.size(); ++i) {
     poll();
-    const double share = lights_[i]->competing_share();
+    const double share = lights_[i]->compensated_share();
     if (share == 0) continue;
     ++count_;
     has_extent_ = has_extent_ || !lights_[i]->is_delta() || has_points(*lights_[i]);
@@ -42,7 +42,7 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
   std::vector<double> weights;
   double sum = 0;
   for (size_t i = 0; i < lights_.size(); ++i) {
-    if (lights_[i]->competing_share() == 0) continue;
+    if (lights_[i]->compensated_share() == 0) continue;
     const double power = std::max(powers[i], least);
     // A single light needs no tree: its probability is 1.
     const bool by_place = strategy == Strategy::tree && count_ > 1;

@@ -187,7 +187,7 @@ class PathTracer final : public Tracer {
     const Path& path = paths_[lane];
     for (const EnvironmentLight* light : world_.environment())
       add(lane, *light, light->radiance(path.previous.p, path.ray.d, path.lambda),
-          weight_of(*light, path, [&] { return light->competing_pdf(path.previous.p, path.ray.d); }));
+          weight_of(*light, path, [&] { return light->compensated_pdf(path.previous.p, path.ray.d); }));
   }
 
   void add_emission(size_t lane) {
@@ -243,7 +243,7 @@ class PathTracer final : public Tracer {
       const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light.x, number);
       if (!chosen) continue;
       const auto [light, probability] = *chosen;
-      const auto sample = light->sample_competing(point.hit.p, on_light, path.lambda);
+      const auto sample = light->sample_compensated(point.hit.p, on_light, path.lambda);
       if (!sample || sample->radiance.is_black()) continue;
       if (!is_possible(*sample)) {
         blame(i, *light);

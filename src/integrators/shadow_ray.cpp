@@ -46,7 +46,7 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
 /// Ratio tracking (Novak et al. 2014); in a homogeneous medium the transmittance itself, with probability 1.
 bool ShadowRay::pass_medium(const Ray& ray, RandomStream& rng) {
   if (medium_->is_homogeneous()) {
-    MajorantSteps steps = medium_->along(ray, lambda_);
+    MajorantSteps steps = medium_->majorants(ray, lambda_);
     MajorantSteps::Step step;
     while (steps.next(step)) {
       const SampledSpectrum t = attenuated(step.sigma, step.end - step.begin);
@@ -57,7 +57,7 @@ bool ShadowRay::pass_medium(const Ray& ray, RandomStream& rng) {
   const int h = path_.hero;
   SampledSpectrum t;
   const auto collide = [&](const Vec3& p, const SampledSpectrum& majorant, const SampledSpectrum& t_maj) {
-    const SampledSpectrum null = null_coefficient(majorant, medium_->at(p, lambda_));
+    const SampledSpectrum null = null_coefficient(majorant, medium_->properties(p, lambda_));
     const SampledSpectrum scaled = t_maj * (1 / (t_maj[h] * majorant[h]));
     path_.multiply(scaled * null, scaled * null, scaled * majorant);
     constexpr float kLow = 0.05f, kEnd = 0.75f;  // Russian roulette, as in pbrt-v4

@@ -119,7 +119,7 @@ class VolPathTracer final : public Tracer {
     SampledSpectrum t;
     const bool emits = medium_->is_emissive();
     const auto collide = [&](const Vec3& p, const SampledSpectrum& majorant, const SampledSpectrum& t_maj) {
-      const MediumPoint at = medium_->at(p, lambda_);
+      const MediumPoint at = medium_->properties(p, lambda_);
       const int h = path_.hero;
       if (emits && depth_ < settings_.max_depth) add_medium_emission(at, majorant, t_maj);
       const float absorbed = at.sigma_a[h] / majorant[h], scattered = at.sigma_s[h] / majorant[h];
@@ -262,7 +262,7 @@ class VolPathTracer final : public Tracer {
     const auto chosen = selector_.choose(place, on_light.x, of_choice);
     if (!chosen) return;
     const auto [light, probability] = *chosen;
-    const auto sample = light->sample_competing(place.p, on_light, lambda_);
+    const auto sample = light->sample_compensated(place.p, on_light, lambda_);
     if (!sample || sample->radiance.is_black()) return;
     if (!is_possible(*sample)) return blame({PlugInFault::Kind::light, uint32_t(light->index())});
     ShadowRay shadow(world_, lambda_, path_.hero, ray_.time, poll_);
@@ -288,7 +288,7 @@ class VolPathTracer final : public Tracer {
   void add_environment() {
     for (const EnvironmentLight* light : world_.environment())
       add(*light, light->radiance(previous_.p, ray_.d, lambda_),
-          [&] { return light->competing_pdf(previous_.p, ray_.d); });
+          [&] { return light->compensated_pdf(previous_.p, ray_.d); });
   }
   void add_emission(const SurfacePoint& point) {
     const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};

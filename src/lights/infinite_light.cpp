@@ -28,7 +28,7 @@ class ConstantEnvironment final : public EnvironmentLight {
   }
   float pdf(const Vec3&, const Vec3&) const override { return kUniformPdf; }
   /// BSDF samples are concentrated where a surface reflects the sky most; uniform light samples are not.
-  double competing_share() const override { return 0; }
+  double compensated_share() const override { return 0; }
   bool is_delta() const override { return false; }
   /// Power of the light that enters a sphere of the scene's radius.
   double power(float radius) const override {
@@ -54,7 +54,7 @@ class ImageEnvironment final : public EnvironmentLight {
     return sample_from(texels_by_power_, u, lambda);
   }
   /// Samples texels by luminance above the mean, for multiple importance sampling.
-  std::optional<LightSample> sample_competing(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
+  std::optional<LightSample> sample_compensated(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
     return sample_from(texels_by_excess_, u, lambda);
   }
   /// Directions are mapped by the inverse of the light's transform.
@@ -62,10 +62,10 @@ class ImageEnvironment final : public EnvironmentLight {
     return image_.nearest(to_square(direction), lambda) * scale_;
   }
   float pdf(const Vec3&, const Vec3& direction) const override { return density(texels_by_power_, direction); }
-  float competing_pdf(const Vec3&, const Vec3& direction) const override {
+  float compensated_pdf(const Vec3&, const Vec3& direction) const override {
     return density(texels_by_excess_, direction);
   }
-  double competing_share() const override { return excess_share_; }
+  double compensated_share() const override { return excess_share_; }
   bool is_delta() const override { return false; }
   /// Power of the light that enters a sphere of the scene's radius.
   double power(float radius) const override {
@@ -110,12 +110,12 @@ class ImageEnvironment final : public EnvironmentLight {
     if (!(density > 0)) return {};
     const Vec3 w = sphere_from_square(uv);
     return LightSample{image_.nearest(uv, lambda) * scale_, directions_.to_world(w), INFINITY,
-                       density * kPerSphere / directions_.spread(w)};
+                       density * kPerSphere / directions_.solid_angle_factor(w)};
   }
   /// Density over solid angle: density over the square, over the solid angle of the square.
   float density(const Distribution2D& texels, const Vec3& direction) const {
     const Vec3 w = directions_.to_light(direction);
-    return texels.pdf(square_from_sphere(w)) * kPerSphere / directions_.spread(w);
+    return texels.pdf(square_from_sphere(w)) * kPerSphere / directions_.solid_angle_factor(w);
   }
   Vec2 to_square(const Vec3& direction) const { return square_from_sphere(directions_.to_light(direction)); }
 

@@ -181,7 +181,7 @@ class DiffuseAreaLight final : public AreaLight {
     const float density = pdf_along(at.ng, normalize_any(d), length(d));
     return density > 0 ? density : 0;  // NaN if both points coincide
   }
-  bool is_delta() const override { return !surface_->is_met(); }
+  bool is_delta() const override { return !surface_->is_intersectable(); }
   /// Diffuse emission: pi times radiance times area, for each emitting side.
   double power(float) const override {
     return emission_->luminance * double(scale_) * kPiD * surface_->area() * emission_->sides();
@@ -210,7 +210,7 @@ class DiffuseAreaEmission final : public AreaEmission {
  public:
   explicit DiffuseAreaEmission(const Params& p) : emission_(std::make_shared<const DiffuseEmission>(p)) {}
   bool is_by_face() const override { return emission_->power.has_value(); }
-  std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const override {
+  std::unique_ptr<AreaLight> make_area_light(std::unique_ptr<const EmittingSurface> surface) const override {
     return std::make_unique<DiffuseAreaLight>(emission_, std::move(surface));
   }
 

@@ -63,7 +63,7 @@ class SkyLight final : public EnvironmentLight {
     return sample_from(by_irradiance_, u, lambda);
   }
   /// Samples the sun's disc, or the sky by its radiance above the mean: scattered rays find the uniform part as well.
-  std::optional<LightSample> sample_competing(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
+  std::optional<LightSample> sample_compensated(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
     return sample_from(by_excess_, u, lambda);
   }
   SampledSpectrum radiance(const Vec3&, const Vec3& direction, const SampledWavelengths& lambda) const override {
@@ -74,7 +74,7 @@ class SkyLight final : public EnvironmentLight {
     return is_sun(distance2) ? sky + spectra.disc : sky;
   }
   float pdf(const Vec3&, const Vec3& direction) const override { return density(by_irradiance_, direction); }
-  float competing_pdf(const Vec3&, const Vec3& direction) const override { return density(by_excess_, direction); }
+  float compensated_pdf(const Vec3&, const Vec3& direction) const override { return density(by_excess_, direction); }
   bool is_delta() const override { return false; }
   /// Power of the light that enters a sphere of the scene's radius.
   double power(float radius) const override { return kPiD * double(radius) * double(radius) * scalar_illuminance_; }
@@ -197,11 +197,11 @@ class SkyLight final : public EnvironmentLight {
   std::optional<LightSample> sample_from(const Sampling& sampling, Vec2 u, const SampledWavelengths& lambda) const {
     const SkySpectra::Sample spectra = spectra_.at(lambda);
     if (u.x < sampling.sun) {
-      const Vec3 wi = disc_.sample({stretched(u.x, 0, sampling.sun), u.y});
+      const Vec3 wi = disc_.sample({remap_sample(u.x, 0, sampling.sun), u.y});
       if (!(dot(wi, frame_.z) > 0)) return {};
       return LightSample{spectra.disc + spectra.sky * at_sun_, wi, INFINITY, sampling.on_disc};
     }
-    const auto [local, density] = sampling.sky.sample({stretched(u.x, sampling.sun, 1), u.y});
+    const auto [local, density] = sampling.sky.sample({remap_sample(u.x, sampling.sun, 1), u.y});
     const Vec3 wi = frame_.to_world(local);
     const float distance2 = distance2_to_sun(wi);
     const bool on_disc = is_sun(distance2);

@@ -251,7 +251,7 @@ extern const MaterialInfo abm_material{
               .is_exact = true,
               .is_noisy = true,
               .cost = 1.77,
-              .takes_wall_textures = true,
+              .accepts_wall_textures = true,
               .quiet = {"mode", "weighted"}}};
 
 }  // namespace frond

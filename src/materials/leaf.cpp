@@ -58,7 +58,7 @@ const MaterialInfo& OpenLeaf::chosen(std::string_view model, const Params& p) co
   if (model != kAuto) return **std::ranges::find(models_, model, [](const MaterialInfo* m) { return m->name; });
   const auto found = std::ranges::find_if(models_, [this, textures = has_wall_textures(p)](const MaterialInfo* m) {
     return reference_ && m->leaf->reference == reference_->name && m->leaf->is_exact &&
-           (m->leaf->takes_wall_textures || !textures);
+           (m->leaf->accepts_wall_textures || !textures);
   });
   if (found == models_.end()) throw std::logic_error("no leaf model is exact and takes textures of walls");
   return **found;

@@ -40,11 +40,11 @@ class Cloud final : public Medium {
         frequency_(float(p.real("frequency"))),
         largest_(largest_density()) {}
 
-  MediumPoint at(const Vec3& p, const SampledWavelengths& lambda) const override {
-    const float density = density_at(box_.local(p));
+  MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
+    const float density = density_at(box_.world_to_local(p));
     return {coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
   }
-  MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
+  MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return box_.steps(ray, nullptr, coefficients_.sigma_t(lambda) * largest_);
   }
   void check(const WavelengthStrategy& wavelengths) const override { null_collisions_.check(*this, wavelengths); }

@@ -72,8 +72,8 @@ class UniformGrid final : public Medium {
     density_.bound(majorants_, [](float v) { return v; });
   }
 
-  MediumPoint at(const Vec3& p, const SampledWavelengths& lambda) const override {
-    const Vec3 unit = box_.unit(p);
+  MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
+    const Vec3 unit = box_.world_to_unit(p);
     const float density = density_.at(unit);
     MediumPoint point{coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
     if (temperatures_)
@@ -83,7 +83,7 @@ class UniformGrid final : public Medium {
     point.emission *= point.sigma_a * emission_scale_.at(unit);
     return point;
   }
-  MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
+  MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
   bool is_emissive() const override { return emission_ || temperatures_; }
@@ -225,12 +225,12 @@ class RgbGrid final : public Medium {
         for (c[0] = 0; c[0] < kMajorantCells; ++c[0]) {
           const Vec3 middle = Vec3{float(c[0]) + 0.5f, float(c[1]) + 0.5f, float(c[2]) + 0.5f} * kCell;
           const float sum = (sigma_a_ ? of_absorption_.at(c) : 1) + (sigma_s_ ? of_scattering_.at(c) : 1);
-          majorants_.raise(middle, middle, scale_ * sum);
+          majorants_.raise_bound(middle, middle, scale_ * sum);
         }
   }
 
-  MediumPoint at(const Vec3& p, const SampledWavelengths& lambda) const override {
-    const Vec3 unit = box_.unit(p);
+  MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
+    const Vec3 unit = box_.world_to_unit(p);
     const auto in_use = [&lambda] {
       SampledSpectrum s;
       for (int i = 0; i < lambda.count; ++i) s[i] = 1;
@@ -244,7 +244,7 @@ class RgbGrid final : public Medium {
       point.emission = point.sigma_a * emission_->at(unit, lambda) * white_->sample(lambda) * emission_scale_;
     return point;
   }
-  MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
+  MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     SampledSpectrum one;
     for (int i = 0; i < lambda.count; ++i) one[i] = 1;
     return box_.steps(ray, &majorants_, one);

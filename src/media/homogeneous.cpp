@@ -34,12 +34,12 @@ class Homogeneous final : public Medium {
     if (p.given("preset")) preset_where_ = p.where("preset");
   }
 
-  MediumPoint at(const Vec3&, const SampledWavelengths& lambda) const override {
+  MediumPoint properties(const Vec3&, const SampledWavelengths& lambda) const override {
     MediumPoint point{coefficients_.sigma_a(lambda), coefficients_.sigma_s(lambda), {}, phase_};
     if (emission_) point.emission = point.sigma_a * emission_->sample(lambda) * emission_scale_;
     return point;
   }
-  MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
+  MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return {0, ray.t_max, coefficients_.sigma_t(lambda)};
   }
   bool is_homogeneous() const override { return true; }
@@ -77,7 +77,7 @@ class Turbid final : public Medium {
       p.warn("transmittance", "where reflectance and transmittance sum to more than 1, both are scaled to a sum of 1");
   }
 
-  MediumPoint at(const Vec3&, const SampledWavelengths& lambda) const override {
+  MediumPoint properties(const Vec3&, const SampledWavelengths& lambda) const override {
     MediumPoint point;
     SampledSpectrum share;
     const SampledSpectrum r = reflectance_->sample(lambda), t = transmittance_->sample(lambda);
@@ -86,10 +86,10 @@ class Turbid final : public Medium {
       point.sigma_a[i] = extinction_ * (1 - albedo), point.sigma_s[i] = extinction_ * albedo;
       share[i] = albedo > 0 ? r[i] / (r[i] + t[i]) : 0;
     }
-    point.phase = Phase::of_leaves(share);
+    point.phase = Phase::bi_lambertian(share);
     return point;
   }
-  MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
+  MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     SampledSpectrum sigma;
     for (int i = 0; i < lambda.count; ++i) sigma[i] = extinction_;
     return {0, ray.t_max, sigma};

@@ -60,11 +60,11 @@ Grids read_grids(const Params& p) {
   const Vec3 size = grids.bounds.max - grids.bounds.min;
   const double reach = double(std::max(largest_coordinate(grids.bounds.min), largest_coordinate(grids.bounds.max)));
   if (constexpr double kVisible = 1. / 4096;
-      reach > kFar && float_step(reach) > kVisible * double(largest_coordinate(size)))
+      reach > kFar && float_spacing(reach) > kVisible * double(largest_coordinate(size)))
     p.warn("filename",
            fmt::format("its grid lies up to {:.3g} units from the origin, where coordinates in 32-bit floats "
                        "have steps of {:g}: write it near the origin, and place it by Translate",
-                       reach, float_step(reach)));
+                       reach, float_spacing(reach)));
   return grids;
 }
 
@@ -81,19 +81,19 @@ class NanoVdb final : public Medium {
         emission_scale_(float(p.real("Lescale"))) {
     grids_.density->for_each([this](const Vec3& low, const Vec3& high, float density) {
       check_stop();  // a large tile raises all cells
-      majorants_.raise(box_.share(low), box_.share(high), density);
+      majorants_.raise_bound(box_.local_to_unit(low), box_.local_to_unit(high), density);
     });
   }
 
-  MediumPoint at(const Vec3& p, const SampledWavelengths& lambda) const override {
-    const Vec3 local = box_.local(p);
+  MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
+    const Vec3 local = box_.world_to_local(p);
     const float density = grids_.density->at(local);
     MediumPoint point{coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
     if (is_emissive())
       point.emission = point.sigma_a * temperature_.emission(grids_.temperature->at(local), lambda) * emission_scale_;
     return point;
   }
-  MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
+  MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
   bool is_emissive() const override { return grids_.temperature && emission_scale_ > 0; }

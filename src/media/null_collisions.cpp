@@ -39,7 +39,7 @@ void NullCollisionCheck::check(const Medium& medium, const WavelengthStrategy& w
     SampledSpectrum unused;
     track(medium, ray, lambda, hero, rng.uniform(), rng, poll, unused,
           [&](const Vec3& p, const SampledSpectrum& majorant, const SampledSpectrum&) {
-            const MediumPoint at = medium.at(p, lambda);
+            const MediumPoint at = medium.properties(p, lambda);
             const bool is_real = rng.uniform() * majorant[hero] < at.sigma_a[hero] + at.sigma_s[hero];
             return !is_real && ++collisions <= int64_t{kMostNullCollisions} * kRays;
           });

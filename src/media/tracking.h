@@ -27,7 +27,7 @@ inline SampledSpectrum attenuated(const SampledSpectrum& sigma, float d) {
 template <class Collide>
 bool track(const Medium& medium, const Ray& ray, const SampledWavelengths& lambda, int hero, float u, RandomStream& rng,
            StopPoll& poll, SampledSpectrum& transmittance, const Collide& collide) {
-  MajorantSteps steps = medium.along(ray, lambda);
+  MajorantSteps steps = medium.majorants(ray, lambda);
   transmittance = SampledSpectrum(1);
   MajorantSteps::Step step;
   float depth = -std::log(1 - u);  // optical depth of the majorant to the next collision

@@ -226,7 +226,7 @@ class FluxMeter::Sums {
     for (uint64_t i = first; i < first + count; ++i) {
       if (i % kPolled == 0) check_stop();
       RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
-      const SampledWavelengths lambda = state_.wavelengths.sample_in_turn(i, random.uniform());
+      const SampledWavelengths lambda = state_.wavelengths.sample_for_index(i, random.uniform());
       record_.clear();
       follow(lambda, hash_key(state_.scene().seed(), uint64_t{kKeys}, i), random);
       for (size_t q = 0; q < record_.values().size(); ++q) {
@@ -344,7 +344,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   check_target(scene, target);
   HorizontalIrradiance irradiance(loaded);
   LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance);
-  Incoming incoming(scene, std::move(irradiance), wavelengths.sample_in_turn(0, 0.5f));
+  Incoming incoming(scene, std::move(irradiance), wavelengths.sample_for_index(0, 0.5f));
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
   state_ = std::make_unique<State>(
       State{std::move(loaded), target, std::move(incoming), std::move(wavelengths), materials, bands});

@@ -17,9 +17,9 @@ class LitBands {
   /// an irradiance that is unknown or 0 in a band, or larger than 0 at a wavelength at which the scene has no light.
   LitBands(const WavelengthStrategy& strategy, const HorizontalIrradiance& of_scene, const SpectrumPtr& irradiance);
 
-  /// As WavelengthStrategy::sample_in_turn.
-  SampledWavelengths sample_in_turn(uint64_t index, float u) const {
-    SampledWavelengths lambda = strategy_.sample_in_turn(index, u);
+  /// As WavelengthStrategy::sample_for_index.
+  SampledWavelengths sample_for_index(uint64_t index, float u) const {
+    SampledWavelengths lambda = strategy_.sample_for_index(index, u);
     if (!samplers_.empty())
       for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
         lambda.nm[lane] = samplers_[lambda.band[lane]].sample(u);

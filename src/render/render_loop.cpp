@@ -150,7 +150,7 @@ class Worker {
       else
         filter_[i] = {{0, 0}, 1};
       on_film[i] = {float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
-      if (!has_fixed_wavelengths_) b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
+      if (!has_fixed_wavelengths_) b.lambda[i] = job_.wavelengths.sample_for_index(first + i, u[i]);
       b.keys[i] = sample_key(job_.seed, at.x, at.y, first + i);
     }
     for (size_t i = 0; i < kBundle; i += RayPacket::kWidth)
@@ -294,7 +294,7 @@ int film_exponent(const RenderJob& job, const FilmSettings& settings) {
     bundle.wanted = bundle.lanes;
     float u;
     job.sampler.get1d({x, y, i}, uint32_t(Dimension::wavelengths), &u);
-    bundle.lambda[lane] = job.wavelengths.sample_in_turn(i, u);
+    bundle.lambda[lane] = job.wavelengths.sample_for_index(i, u);
     bundle.rays[lane] = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
     bundle.keys[lane] = sample_key(job.seed, x, y, i);
     tracer->trace(bundle);

@@ -29,7 +29,7 @@ Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
   constexpr int kPaths = 1024;
   Triple sum{};
   for (int i = 0; i < kPaths; ++i) {
-    const SampledWavelengths lambda = wavelengths.sample_in_turn(uint64_t(i), (float(i) + 0.5f) / float(kPaths));
+    const SampledWavelengths lambda = wavelengths.sample_for_index(uint64_t(i), (float(i) + 0.5f) / float(kPaths));
     const Triple one = color * wavelengths.sensor(SampledSpectrum(1), lambda).color();
     for (size_t c = 0; c < 3; ++c) sum[c] += one[c] / kPaths;
   }

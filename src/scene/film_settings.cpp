@@ -72,7 +72,7 @@ FilmSettings Scene::film_settings(const SceneSettings& description, const Regist
   OptionResolver resolver(description, log);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   FilmSettings film =
-      made_by(info, description.film.where, [&] { return info.make(Params(info, description.film, resolver)); });
+      make_checked(info, description.film.where, [&] { return info.make(Params(info, description.film, resolver)); });
   check_film(film, info, description.film.where);
   const Interval open = open_times(description, registry, resolver);
   film.exposure *= open.max - open.min;

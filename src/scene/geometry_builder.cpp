@@ -186,7 +186,7 @@ class GeometryBuilder {
     const Location& where = shape.plugin.where;
     const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, where);
     const Params params(info, shape.plugin, resolver_);
-    MadeShape made = made_by(info, where, [&] {
+    MadeShape made = make_checked(info, where, [&] {
       return info.make(params, {shape.world_from_object, shape.reverse_orientation});
     });
     if (const auto* set = std::get_if<ObjectInstances>(&made))

@@ -209,7 +209,8 @@ class OriginFinder {
     size_t count = 0;
     for (const Anchor& a : anchors) {
       const double distance = largest_coordinate(a.p - origin);
-      if (a.shines || !(a.extent > 0) || !is_far(a.p - origin) || float_step(distance) < kVisible * a.extent) continue;
+      if (a.shines || !(a.extent > 0) || !is_far(a.p - origin) || float_spacing(distance) < kVisible * a.extent)
+        continue;
       ++count;
       if (!farthest || distance > largest_coordinate(farthest->p - origin)) farthest = &a;
     }
@@ -219,7 +220,7 @@ class OriginFinder {
                           "({:.10g}, {:.10g}, {:.10g}), where coordinates are rounded to steps of {:g}, the scene's "
                           "origin is ({:.10g}, {:.10g}, {:.10g})",
                           count, anchors.size(), farthest->p.x, farthest->p.y, farthest->p.z,
-                          float_step(largest_coordinate(farthest->p - origin)), origin.x, origin.y, origin.z));
+                          float_spacing(largest_coordinate(farthest->p - origin)), origin.x, origin.y, origin.z));
   }
 
   const SceneDescription& description_;

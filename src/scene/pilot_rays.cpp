@@ -33,7 +33,7 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   if (scene_.has_motion()) sampler.get1d(bundle.samples, uint32_t(Dimension::time), time.data());
   for (uint32_t k = 0; k < kSamples; ++k) {
     on_film[k] = {float(x) + on_film[k].x, float(y) + on_film[k].y};
-    bundle.lambda[k] = scene_.wavelengths().sample_in_turn(k, wavelength[k]);
+    bundle.lambda[k] = scene_.wavelengths().sample_for_index(k, wavelength[k]);
     bundle.keys[k] = sample_key(scene_.seed(), x, y, bundle.samples.first + k);
   }
   scene_.camera().rays(on_film.data(), on_lens.data(), int(kSamples), bundle.rays.data());

@@ -129,7 +129,7 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     std::shared_ptr<const Texture> result = make(
         key,
         [&] {
-          return made_by(info, t.plugin.where, [&] {
+          return make_checked(info, t.plugin.where, [&] {
             return info.make(Params(info, t.plugin, *this), {t.world_from_texture, &shared_});
           });
         },
@@ -192,8 +192,8 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
       "material " + m.name,
       [&] {
         made.bend = make_normal_bend(m.plugin, *this);
-        return made_by(info, m.plugin.where,
-                       [&] { return info.make(Params(info, split_bend(m.plugin, false), *this)); });
+        return make_checked(info, m.plugin.where,
+                            [&] { return info.make(Params(info, split_bend(m.plugin, false), *this)); });
       },
       made.needs_details);
   if (made.bend) made.needs_details = true;

@@ -45,7 +45,7 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
   for (const ParsedParam& p : sensor_params(description))
     if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
-  return made_by(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
+  return make_checked(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
 }
 
 }  // namespace
@@ -162,7 +162,7 @@ class SceneBuilder {
   template <class Info, class... Args>
   auto make(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver, const Args&... args) {
     const Info& info = table.get(plugin.name, plugin.where);
-    return made_by(info, plugin.where, [&] { return info.make(Params(info, plugin, resolver), args...); });
+    return make_checked(info, plugin.where, [&] { return info.make(Params(info, plugin, resolver), args...); });
   }
 
   template <class Info>
@@ -399,8 +399,8 @@ class SceneBuilder {
       // Lights divide by the area.
       if (const double area = emitting->area(); !(std::isfinite(area) && area > 0))
         fail(where, "an area light needs a surface with an area, this one has {}", area);
-      auto light = made_by(registry_.area_lights.get(description_.area_lights[*surface.area_light].name, where), where,
-                           [&] { return emission.over(std::move(emitting)); });
+      auto light = make_checked(registry_.area_lights.get(description_.area_lights[*surface.area_light].name, where),
+                                where, [&] { return emission.make_area_light(std::move(emitting)); });
       const AreaLight* const added = light.get();
       add(std::move(light), where);
       return added;

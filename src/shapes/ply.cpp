@@ -186,7 +186,7 @@ class BodyReader {
   void note_step(const Vec3d& first) {
     if (header_.format == PlyFormat::ascii || !is_far(first)) return;
     for (const PlyProperty& p : element_->properties)
-      if (slot_of(p.name) < 3 && p.type == PlyType::float32) result_.step = float_step(largest_coordinate(first));
+      if (slot_of(p.name) < 3 && p.type == PlyType::float32) result_.step = float_spacing(largest_coordinate(first));
   }
 
   /// Memory is reserved for no more faces than the rest of the file can contain.

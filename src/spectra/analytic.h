@@ -16,7 +16,7 @@ class ConstantSpectrum final : public Spectrum {
  public:
   explicit ConstantSpectrum(float value, Interval range_nm = kEveryWavelength) : value_(value), range_nm_(range_nm) {}
   float at(float) const override { return value_; }
-  SampledSpectrum sample(const SampledWavelengths& lambda) const override { return sample_by(*this, lambda); }
+  SampledSpectrum sample(const SampledWavelengths& lambda) const override { return sample_lanes(*this, lambda); }
   Interval range_nm() const override { return range_nm_; }
   float max_value() const override { return value_; }
 

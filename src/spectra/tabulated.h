@@ -47,7 +47,7 @@ class DenseSpectrum final : public Spectrum {
     const float t = x - static_cast<float>(i);
     return values_[i] + t * (values_[i + 1] - values_[i]);
   }
-  SampledSpectrum sample(const SampledWavelengths& lambda) const override { return sample_by(*this, lambda); }
+  SampledSpectrum sample(const SampledWavelengths& lambda) const override { return sample_lanes(*this, lambda); }
   Interval range_nm() const override { return {double(first_nm_), double(first_nm_) + double(last_)}; }
   float max_value() const override { return *std::max_element(values_.begin(), values_.end()); }
 

@@ -8,8 +8,8 @@ std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Re
                                       const WavelengthStrategy& wavelengths, uint64_t seed) {
   SceneResolver resolver(description, registry, wavelengths);
   const SamplerInfo& info = registry.samplers.get(description.sampler.name, description.sampler.where);
-  return made_by(info, description.sampler.where,
-                 [&] { return info.make(Params(info, description.sampler, resolver), seed); });
+  return make_checked(info, description.sampler.where,
+                      [&] { return info.make(Params(info, description.sampler, resolver), seed); });
 }
 
 int film_exponent(const Scene& scene) {

@@ -39,8 +39,8 @@ TEST(PreciseTransform, CamerasInMapCoordinatesSeeTheSame) {
 }
 
 TEST(PreciseTransform, StepsOfFloats) {
-  EXPECT_EQ(float_step(5.2e6), 0.5);
-  EXPECT_EQ(float_step(1), 0x1p-23);
+  EXPECT_EQ(float_spacing(5.2e6), 0.5);
+  EXPECT_EQ(float_spacing(1), 0x1p-23);
   EXPECT_TRUE(is_far({0, -300, 0}));
   EXPECT_FALSE(is_far({256, -256, 0}));
 }

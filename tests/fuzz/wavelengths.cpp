@@ -12,7 +12,7 @@ static void check(const WavelengthStrategy& strategy) {
   fuzz::require(std::isfinite(range.min) && std::isfinite(range.max) && range.min <= range.max, "the range is finite");
   fuzz::require(strategy.bands().empty() != strategy.film_space().empty(), "the film has colours or bands");
   for (uint64_t i = 0; i < 16; ++i) {
-    const SampledWavelengths lambda = strategy.sample_in_turn(i, (float(i) + 0.5f) / 16);
+    const SampledWavelengths lambda = strategy.sample_for_index(i, (float(i) + 0.5f) / 16);
     fuzz::require_finite(lambda.nm, "a wavelength");
     fuzz::require_finite(lambda.pdf, "a density");
     const SensorResponse response = strategy.sensor(SampledSpectrum(1), lambda);

@@ -160,13 +160,13 @@ TEST(ImageSky, HasItsDensitiesWhateverTheTransform) {
     const bool is_stretched = place == kStretched;
     EXPECT_EQ(sky.warnings.size(), is_stretched ? 1u : 0u);
     for (const bool competing : {false, true}) {
-      const auto pdf = [&](const Vec3& w) { return competing ? light.competing_pdf({}, w) : light.pdf({}, w); };
+      const auto pdf = [&](const Vec3& w) { return competing ? light.compensated_pdf({}, w) : light.pdf({}, w); };
       EXPECT_NEAR(over_the_sphere([&](const Vec3& w) { return double(pdf(w)); }), 1, 5e-3);
       double sum = 0;
       constexpr int kSteps = 200;
       for (int i = 0; i < kSteps * kSteps; ++i) {
         const Vec2 u{(float(i % kSteps) + 0.5f) / kSteps, (float(i / kSteps) + 0.5f) / kSteps};
-        const auto s = competing ? light.sample_competing({}, u, sky.lambda()) : light.sample({}, u, sky.lambda());
+        const auto s = competing ? light.sample_compensated({}, u, sky.lambda()) : light.sample({}, u, sky.lambda());
         ASSERT_TRUE(s);
         if (i % 37 == 0) {
           EXPECT_NEAR(pdf(s->wi) / s->pdf, 1, 0.1) << "but for points at the edge of a texel";

@@ -183,8 +183,8 @@ TEST(SkyLight, SamplesFollowTheDensityWhichIntegratesToOne) {
   expect_density(
       sky, [&](Vec2 u) { return light.sample({}, u, lambda); }, [&](const Vec3& d) { return light.pdf({}, d); });
   expect_density(
-      sky, [&](Vec2 u) { return light.sample_competing({}, u, lambda); },
-      [&](const Vec3& d) { return light.competing_pdf({}, d); });
+      sky, [&](Vec2 u) { return light.sample_compensated({}, u, lambda); },
+      [&](const Vec3& d) { return light.compensated_pdf({}, d); });
 }
 
 TEST(SkyLight, IsNeverNegativeAndAlwaysFinite) {
@@ -198,7 +198,7 @@ TEST(SkyLight, IsNeverNegativeAndAlwaysFinite) {
         const double sum = over_hemisphere(
             [&](const Vec3& d) {
               EXPECT_TRUE(sky.radiance(d).is_physical()) << elevation << ' ' << aerosol << ' ' << angstrom;
-              const float pdf = light.pdf({}, d), competing = light.competing_pdf({}, d);
+              const float pdf = light.pdf({}, d), competing = light.compensated_pdf({}, d);
               EXPECT_TRUE(pdf >= 0 && std::isfinite(pdf) && competing >= 0 && std::isfinite(competing));
               return double(sky.radiance(d)[2]);
             },

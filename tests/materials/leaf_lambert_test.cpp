@@ -59,7 +59,7 @@ TEST(LeafLambert, TakesBandsHoweverClose) {
   Arena arena;
   RandomStream rng(1);
   for (uint64_t index = 0; index < 5; ++index) {
-    const SampledWavelengths lambda = strategy->sample_in_turn(index, 0);
+    const SampledWavelengths lambda = strategy->sample_for_index(index, 0);
     const Bsdf& bsdf = *leaf->evaluate({{}, kUp, Frame::around(kUp), {}}, lambda, arena);
     for (int lane = 0; lane < kLanes; ++lane) EXPECT_GT(bsdf.f(kUp, kUp, rng)[lane], 0) << index;
   }

@@ -43,7 +43,7 @@ TEST(LeafMaterials, RecordsHoldForTheirBsdfs) {
     const bool takes_walls = error_of([&] {
                                Ready(info->name, {texture("spongyaspect", {"1:2"})});
                              }).find("spongyaspect") == std::string::npos;
-    EXPECT_EQ(takes_walls, info->leaf->takes_wall_textures) << info->name;
+    EXPECT_EQ(takes_walls, info->leaf->accepts_wall_textures) << info->name;
   }
 }
 

@@ -61,8 +61,8 @@ TEST(Phase, SamplesHaveTheDensity) {
   for (const auto& [phase, lane] : {std::pair{Phase::henyey_greenstein(0), 0},
                                     {Phase::henyey_greenstein(0.8f), 0},
                                     {Phase::henyey_greenstein(-0.5f), 0},
-                                    {Phase::of_leaves(reflected), 0},
-                                    {Phase::of_leaves(reflected), 1}}) {
+                                    {Phase::bi_lambertian(reflected), 0},
+                                    {Phase::bi_lambertian(reflected), 1}}) {
     constexpr int kBins = 20, kSamples = 200000, kPerBin = 2000;
     std::array<double, kBins> expected{}, found{};
     for (int i = 0; i < kBins * kPerBin; ++i) {
@@ -94,11 +94,11 @@ void expect_bounded(const std::string& text, float reach = 3) {
   for (int i = 0; i < 3000; ++i) {
     const Vec3 toward{rng.uniform(), rng.uniform(), rng.uniform()}, d = direction(rng);
     Ray ray{toward - d * reach, d, 2 * reach};
-    MajorantSteps steps = in.medium().along(ray, lambda);
+    MajorantSteps steps = in.medium().majorants(ray, lambda);
     MajorantSteps::Step step{};
     float end = 0;
     const auto density_at = [&](float t) {
-      const MediumPoint at = in.medium().at(ray.o + ray.d * t, lambda);
+      const MediumPoint at = in.medium().properties(ray.o + ray.d * t, lambda);
       return at.sigma_a[0] + at.sigma_s[0];
     };
     while (steps.next(step)) {
@@ -131,7 +131,7 @@ TEST(Media, MajorantsAreUpperBounds) {
 TEST(Media, AGridHasItsValuesAtTheCentresOfCells) {
   const InMedium in(R"("string type" "uniformgrid" "integer nx" 2 "integer ny" 1 "integer nz" 3
     "float density" [1 2 3 4 5 6] "float sigma_s" 0)");
-  const auto at = [&](const Vec3& p) { return in.medium().at(p, in.lambda()).sigma_a[0]; };
+  const auto at = [&](const Vec3& p) { return in.medium().properties(p, in.lambda()).sigma_a[0]; };
   for (int z = 0; z < 3; ++z)
     for (int x = 0; x < 2; ++x)
       EXPECT_NEAR(at({0.25f + 0.5f * float(x), 0.5f, (float(z) + 0.5f) / 3}), float(1 + x + 2 * z), 1e-5f);
@@ -224,7 +224,7 @@ Triple color_in_grid(const Medium& medium, const Vec3& unit, const ColorSpace& s
   for (int nm = 360; nm <= 830; ++nm) {
     SampledWavelengths lambda;
     lambda.nm[0] = float(nm), lambda.pdf[0] = 1, lambda.active[0] = true, lambda.count = 1;
-    const double light = double(unit_d65()->at(float(nm))), sigma = double(medium.at(unit, lambda).sigma_a[0]);
+    const double light = double(unit_d65()->at(float(nm))), sigma = double(medium.properties(unit, lambda).sigma_a[0]);
     const Triple bar = cie_xyz(nm);
     for (size_t i = 0; i < 3; ++i) xyz[i] += light * sigma * bar[i];
     white += light * bar[1];

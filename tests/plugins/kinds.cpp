@@ -90,7 +90,7 @@ class Glow final : public AreaLight {
     const Vec3 d = at.p - from;
     return dot(d, d) * length(d) / (std::abs(dot(at.ng, d)) * float(surface_->area()));
   }
-  bool is_delta() const override { return !surface_->is_met(); }
+  bool is_delta() const override { return !surface_->is_intersectable(); }
   double power(float) const override { return surface_->area(); }
   const Spectrum& emission() const override { return *spectrum_; }
 
@@ -102,7 +102,7 @@ class GlowEmission final : public AreaEmission {
  public:
   explicit GlowEmission(const Params& p) : spectrum_(p.spectrum("L")), makes_nothing_(p.boolean("nothing")) {}
   bool is_by_face() const override { return false; }
-  std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const override {
+  std::unique_ptr<AreaLight> make_area_light(std::unique_ptr<const EmittingSurface> surface) const override {
     if (makes_nothing_) return nullptr;
     return std::make_unique<Glow>(spectrum_, std::move(surface));
   }

@@ -104,7 +104,7 @@ double weight_below(const Filter& filter, double x) {
   const auto radius = double(filter.radius().x);
   double below = 0, all = 0;
   for (int i = 0; i < kSteps; ++i) {
-    const double at = (2 * (i + 0.5) / kSteps - 1) * radius, w = double(filter.along({float(at), 0}).x);
+    const double at = (2 * (i + 0.5) / kSteps - 1) * radius, w = double(filter.evaluate_axes({float(at), 0}).x);
     all += w, below += at < x ? w : 0;
   }
   return below / all;
@@ -143,7 +143,8 @@ TEST(Splatting, WeightsAreTheFiltersAndAverageToWhatIsSaid) {
           const Vec2 u = grid(i, kSide);
           const SplatKernel::Weights w = kernel.at(u);
           const double weight = double(w.at(size_t(dx + s.reach_x()), size_t(dy + s.reach_y())));
-          const Vec2 f = filter->along({u.x - 0.5f - float(dx), u.y - 0.5f - float(dy)}), peak = filter->along({0, 0});
+          const Vec2 f = filter->evaluate_axes({u.x - 0.5f - float(dx), u.y - 0.5f - float(dy)}),
+                     peak = filter->evaluate_axes({0, 0});
           sum += weight, squares += weight * weight;
           const SplatKernel::Weights top = kernel.at({0.5f, 0.5f});
           ratio = double(top.at(size_t(s.reach_x()), size_t(s.reach_y())));
@@ -337,7 +338,7 @@ TEST(Splatting, StandardErrorsKnowThatPixelsShareTheirNoise) {
 TEST(Splatting, WeightsThatCancelOutDoNotMakeAPixelBright) {
   const auto filter = make("mitchell");
   constexpr int kPixel = 5;
-  const auto weight_at = [&](float x) { return filter->along({x - (kPixel + 0.5f), 0}).x; };
+  const auto weight_at = [&](float x) { return filter->evaluate_axes({x - (kPixel + 0.5f), 0}).x; };
   float near = 4;  // where the weight in the pixel is that of the other, but for the sign
   constexpr float kFar = 3.9f;
   while (near < 5 && weight_at(near) + weight_at(kFar) <= 0) near += 1e-3f;

@@ -79,7 +79,7 @@ TEST(Bands, FourAtMostAreTheSameForEveryPath) {
   const auto bands = at({450, 550, 650, 850});
   EXPECT_THAT(bands->fixed_nm(), ElementsAre(450, 550, 650, 850));
   for (const uint64_t index : {0u, 1u, 7u})
-    EXPECT_THAT(bands->sample_in_turn(index, 0.7f).nm, ElementsAre(450, 550, 650, 850));
+    EXPECT_THAT(bands->sample_for_index(index, 0.7f).nm, ElementsAre(450, 550, 650, 850));
   EXPECT_TRUE(at({450, 550, 650, 750, 850})->fixed_nm().empty());
   EXPECT_EQ(at({450, 550, 650, 750, 850})->listed_nm().size(), 5u);
 }
@@ -91,7 +91,7 @@ TEST(Bands, MoreAreDealtOutInTurn) {
     const auto bands = at(nm);
     std::vector<int> seen(count);
     for (uint64_t index = 0; index < count; ++index) {
-      const SampledWavelengths lambda = bands->sample_in_turn(index, 0.3f);
+      const SampledWavelengths lambda = bands->sample_for_index(index, 0.3f);
       ASSERT_EQ(lambda.count, 4);
       for (size_t lane = 0; lane < 4; ++lane) {
         ++seen[lambda.band[lane]];
@@ -110,7 +110,7 @@ TEST(Bands, AreAllSeenByAQuarterAsManySamples) {
     for (const uint64_t first : {0u, 3u, 17u}) {
       std::set<uint16_t> seen;
       for (uint64_t i = 0; i < (count + 3) / 4; ++i)
-        for (const uint16_t band : bands->sample_in_turn(first + i, 0).band) seen.insert(band);
+        for (const uint16_t band : bands->sample_for_index(first + i, 0).band) seen.insert(band);
       EXPECT_EQ(seen.size(), count) << first;
     }
   }
@@ -131,7 +131,7 @@ TEST(Bands, ByChanceEveryBandIsAsLikely) {
 
 TEST(Bands, LanesFeedTheirOwnChannels) {
   const auto bands = at({400, 500, 600, 700, 800, 900});
-  const SampledWavelengths lambda = bands->sample_in_turn(1, 0);
+  const SampledWavelengths lambda = bands->sample_for_index(1, 0);
   SampledSpectrum radiance;
   for (int i = 0; i < 4; ++i) radiance[i] = float(i + 1);
   const SensorResponse r = bands->sensor(radiance, lambda);
@@ -168,7 +168,7 @@ TEST_F(Responses, AreSampledWithinTheirSupport) {
   EXPECT_EQ(bands->range_nm().max, 550);
   EXPECT_NEAR(bands->bands()[0].nm, 18300.0 / 35, 1e-9);  // of a trapezium
   for (float u = 0; u < 1; u += 0.01f)
-    EXPECT_TRUE(bands->range_nm().contains(double(bands->sample_in_turn(0, u).nm[0])));
+    EXPECT_TRUE(bands->range_nm().contains(double(bands->sample_for_index(0, u).nm[0])));
 }
 
 /// By the midpoints of many steps between the response's points.
@@ -208,7 +208,7 @@ TEST_F(Responses, ArePaddedWithAnyNumberOfZeros) {
     const double width = c.points.back().nm - c.points.front().nm;
     double first = 0, second = 0;
     for (int i = 0; i < kSamples; ++i) {
-      const SampledWavelengths lambda = bands->sample_in_turn(0, (float(i) + 0.5f) / kSamples);
+      const SampledWavelengths lambda = bands->sample_for_index(0, (float(i) + 0.5f) / kSamples);
       EXPECT_EQ(bands->sensor(SampledSpectrum(1), lambda).value[0], 1);  // equal energy
       EXPECT_TRUE(bands->range_nm().contains(double(lambda.nm[0])));
       const double x = (double(lambda.nm[0]) - c.points.front().nm) / width;
@@ -238,7 +238,7 @@ TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
   for (int i = 0; i < kSamples; ++i) {
     // Golden steps, so that what comes in turn and u have nothing to do with each other.
     const float u = static_cast<float>(std::fmod(i * 0.6180339887498949, 1));
-    const SampledWavelengths lambda = bands->sample_in_turn(uint64_t(i), u);
+    const SampledWavelengths lambda = bands->sample_for_index(uint64_t(i), u);
     const SensorResponse r = bands->sensor(light->sample(lambda), lambda);
     for (size_t k = 0; k < size_t(r.count); ++k) sum[r.channel[k]] += r.value[k], ++count[r.channel[k]];
   }

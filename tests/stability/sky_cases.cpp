@@ -46,7 +46,7 @@ Cell of_light(const Case& c) {
     const SampledSpectrum radiance = sky.radiance({}, d, lambda);
     comparison.require(radiance.is_physical(), "a radiance is negative or not finite");
     comparison.require(d.z > 0 || radiance.is_black() || c.has_ground, "there is light below the horizon");
-    comparison.require(is_sound(sky.pdf({}, d)) && is_sound(sky.competing_pdf({}, d)), "a density is no number");
+    comparison.require(is_sound(sky.pdf({}, d)) && is_sound(sky.compensated_pdf({}, d)), "a density is no number");
   };
   constexpr int kRings = 201, kSectors = 144;  // heights that include 0, 1 and -1
   for (int i = 0; i < kRings; ++i)

@@ -42,7 +42,7 @@ struct AffineMap {
       return largest;
     }
     /// Transforms a normal from the object's space; not normalized.
-    Vec3 normal_out(const Vec3& n) const {
+    Vec3 normal_from_object(const Vec3& n) const {
       const auto along = [&n](Float4 axis) { return axis[0] * n.x + axis[1] * n.y + axis[2] * n.z; };
       return {along(x), along(y), along(z)};
     }
@@ -56,7 +56,7 @@ struct AffineMap {
   }
   /// Returns bounds of the absolute coordinates after the map, and of its intermediate results, of points whose
   /// absolute coordinates are at most `p`.
-  Vec3 largest_point(const Vec3& p) const {
+  Vec3 bound_point(const Vec3& p) const {
     const auto bound = [&p](const std::array<float, 4>& r) {
       return std::abs(r[0]) * p.x + std::abs(r[1]) * p.y + std::abs(r[2]) * p.z + std::abs(r[3]);
     };

@@ -24,7 +24,7 @@ class DirectionMap {
   Vec3 to_light(const Vec3& w) const { return normalize_any(light_from_world_.vector(w)); }
   /// Returns the factor on solid angles around a unit direction of the light's space: the determinant over the cubed
   /// stretch of the direction.
-  float spread(const Vec3& w) const {
+  float solid_angle_factor(const Vec3& w) const {
     if (is_rotation_) return 1;
     const float stretch = length(world_from_light_.vector(w));
     return volume_ / (stretch * stretch * stretch);

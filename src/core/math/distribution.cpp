@@ -87,7 +87,7 @@ WindowedDistribution::Box WindowedDistribution::box(const Window& w) const {
 }
 
 /// Interpolates the summed-area table bilinearly: exact for a piecewise constant density.
-double WindowedDistribution::below(double x, double y) const {
+double WindowedDistribution::cumulative(double x, double y) const {
   const int i = std::min(int(x), width_ - 1), j = std::min(int(y), height_ - 1);
   const double fx = x - i, fy = y - j;
   const double* const low = &sums_[size_t(j) * (size_t(width_) + 1) + size_t(i)];
@@ -97,7 +97,7 @@ double WindowedDistribution::below(double x, double y) const {
 
 /// Returns the integral over a box.
 double WindowedDistribution::sum(const Box& b) const {
-  return below(b.x1, b.y1) - below(b.x0, b.y1) - below(b.x1, b.y0) + below(b.x0, b.y0);
+  return cumulative(b.x1, b.y1) - cumulative(b.x0, b.y1) - cumulative(b.x1, b.y0) + cumulative(b.x0, b.y0);
 }
 
 namespace {
@@ -111,7 +111,7 @@ struct Place {
 /// Returns the position in [first, last] at which a sum, piecewise linear between integers, reaches the share u of its
 /// last value.
 template <class Sum>
-Place place_in(double first, double last, double u, const Sum& sum) {
+Place find_interval(double first, double last, double u, const Sum& sum) {
   const double target = u * sum(last);
   int low = int(first), high = std::max(low, int(std::ceil(last)) - 1);
   while (low < high) {
@@ -133,9 +133,9 @@ std::optional<WindowedDistribution::Sample> WindowedDistribution::sample(Vec2 u,
   const Box b = box(window);
   const double total = sum(b);
   if (!(total > 0)) return {};
-  const auto [x, i] = place_in(b.x0, b.x1, double(u.x), [&](double to) { return sum({b.x0, to, b.y0, b.y1}); });
+  const auto [x, i] = find_interval(b.x0, b.x1, double(u.x), [&](double to) { return sum({b.x0, to, b.y0, b.y1}); });
   const double left = std::max(double(i), b.x0), right = std::min(i + 1.0, b.x1);
-  const auto [y, j] = place_in(b.y0, b.y1, double(u.y), [&](double to) { return sum({left, right, b.y0, to}); });
+  const auto [y, j] = find_interval(b.y0, b.y1, double(u.y), [&](double to) { return sum({left, right, b.y0, to}); });
   const double density = weight(i, j) / total * width_ * height_;
   if (!(density > 0)) return {};
   return Sample{{float(x / width_), float(y / height_)}, float(density)};

@@ -74,7 +74,7 @@ class WindowedDistribution {
   };
   Box box(const Window& window) const;
   /// Returns the interpolated summed-area table.
-  double below(double x, double y) const;
+  double cumulative(double x, double y) const;
   double sum(const Box& b) const;
   double weight(int x, int y) const { return sum({double(x), double(x + 1), double(y), double(y + 1)}); }
 

@@ -25,15 +25,15 @@ constexpr std::array<uint8_t, 256> kPermutation{
 int permuted(int i) { return kPermutation[size_t(i & 255)]; }
 
 /// Returns the dot product of the offset and a gradient toward an edge of the cube.
-float along_gradient(int x, int y, int z, const Vec3& offset) {
+float gradient_dot(int x, int y, int z, const Vec3& offset) {
   const int h = permuted(permuted(permuted(x) + y) + z) & 15;
   const float u = h < 8 || h == 12 || h == 13 ? offset.x : offset.y;
   const float v = h < 4 || h == 12 || h == 13 ? offset.y : offset.z;
   return ((h & 1) != 0 ? -u : u) + ((h & 2) != 0 ? -v : v);
 }
 
-float eased(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
-float mixed(float t, float a, float b) { return (1 - t) * a + t * b; }
+float fade(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
+float lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
 /// Cubic interpolation from 0 to 1.
 float smooth_step(float x, float from, float to) {
   const float t = std::clamp((x - from) / (to - from), 0.f, 1.f);
@@ -41,7 +41,7 @@ float smooth_step(float x, float from, float to) {
 }
 
 /// Returns the number of octaves above the footprint's limit.
-float octaves_left(const SolidCoordinates& at, int octaves) {
+float resolved_octaves(const SolidCoordinates& at, int octaves) {
   const float square = std::max(dot(at.dp_dx, at.dp_dx), dot(at.dp_dy, at.dp_dy));
   return std::clamp(-1 - std::log2(square) / 2, 0.f, float(octaves));
 }
@@ -56,13 +56,13 @@ float perlin_noise(const Vec3& p) {
   const int x = int(fx), y = int(fy), z = int(fz);
   const Vec3 d{at.x - fx, at.y - fy, at.z - fz};
   const auto corner = [&](int i, int j, int k) {
-    return along_gradient(x + i, y + j, z + k, d - Vec3{float(i), float(j), float(k)});
+    return gradient_dot(x + i, y + j, z + k, d - Vec3{float(i), float(j), float(k)});
   };
-  const float wx = eased(d.x), wy = eased(d.y), wz = eased(d.z);
+  const float wx = fade(d.x), wy = fade(d.y), wz = fade(d.z);
   const auto layer = [&](int k) {
-    return mixed(wy, mixed(wx, corner(0, 0, k), corner(1, 0, k)), mixed(wx, corner(0, 1, k), corner(1, 1, k)));
+    return lerp(wy, lerp(wx, corner(0, 0, k), corner(1, 0, k)), lerp(wx, corner(0, 1, k), corner(1, 1, k)));
   };
-  return mixed(wz, layer(0), layer(1));
+  return lerp(wz, layer(0), layer(1));
 }
 
 namespace {
@@ -70,12 +70,12 @@ namespace {
 /// Sums `value` of each octave's noise; omitted octaves contribute `absent`.
 template <class Value>
 float sum_of_octaves(const SolidCoordinates& at, float gain, int octaves, float absent, const Value& value) {
-  const float left = octaves_left(at, octaves);
+  const float left = resolved_octaves(at, octaves);
   const int last = int(left);  // this octave fades out
   float sum = 0, weight = 1, frequency = 1;
   for (int i = 0; i <= last; ++i, frequency *= 1.99f) {
     if (i > 0) weight *= gain;
-    sum += weight * mixed(smooth_step(left - float(i), 0.3f, 0.7f), absent, value(perlin_noise(at.p * frequency)));
+    sum += weight * lerp(smooth_step(left - float(i), 0.3f, 0.7f), absent, value(perlin_noise(at.p * frequency)));
   }
   for (int i = last; i < octaves; ++i, weight *= gain) sum += weight * absent;
   return sum;

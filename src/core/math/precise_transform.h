@@ -58,6 +58,6 @@ inline double largest_coordinate(const Vec3d& v) { return std::max({std::abs(v.x
 inline constexpr double kFar = 256;
 inline bool is_far(const Vec3d& p) { return largest_coordinate(p) > kFar; }
 /// Distance of neighbouring 32-bit floats at `x`.
-inline double float_step(double x) { return std::ldexp(1.0, std::ilogb(x) - 23); }
+inline double float_spacing(double x) { return std::ldexp(1.0, std::ilogb(x) - 23); }
 
 }  // namespace frond

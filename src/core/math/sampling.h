@@ -36,7 +36,7 @@ inline Vec3 sample_cosine_hemisphere(Vec2 u) {
 
 /// Stretches a number that lies in [begin, end) to [0, 1). A number that has chosen one of several lobes then samples
 /// that lobe: a stratified set of pairs gives each lobe an even set, which separate numbers for the choice would not.
-inline float stretched(float u, float begin, float end) {
+inline float remap_sample(float u, float begin, float end) {
   constexpr float kBelowOne = 0x1.fffffep-1f;
   return std::min((u - begin) / (end - begin), kBelowOne);
 }

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 constexpr size_t kLongest = 40, kLongestForeign = 8;
 
 /// Returns the first `most` bytes, without a part of a UTF-8 character at the end.
-std::string_view beginning(std::string_view text, size_t most) {
+std::string_view valid_prefix(std::string_view text, size_t most) {
   const auto continues = [&text](size_t i) { return (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80; };
   for (size_t back = 0; back < 3 && most > 0 && continues(most); ++back) --most;
   return text.substr(0, most);
@@ -51,8 +51,8 @@ void append_escaped(std::string& to, char c) {
     to += c;
 }
 
-std::string cut(std::string_view word, size_t most) {
-  return word.size() <= most ? std::string(word) : fmt::format("{}...", beginning(word, most));
+std::string truncated(std::string_view word, size_t most) {
+  return word.size() <= most ? std::string(word) : fmt::format("{}...", valid_prefix(word, most));
 }
 
 }  // namespace
@@ -74,11 +74,11 @@ std::string printable(std::string_view text) {
 }
 
 std::string excerpt(std::string_view word, const fs::path& file) {
-  return cut(word, is_foreign(file) ? kLongestForeign : kLongest);
+  return truncated(word, is_foreign(file) ? kLongestForeign : kLongest);
 }
 
 std::string excerpt(std::string_view word, const Location& where) {
-  return where.file ? excerpt(word, fs::path(*where.file)) : cut(word, kLongest);
+  return where.file ? excerpt(word, fs::path(*where.file)) : truncated(word, kLongest);
 }
 
 std::string with_short_quotes(std::string_view message, const Location& where) {
@@ -88,7 +88,7 @@ std::string with_short_quotes(std::string_view message, const Location& where) {
     const size_t begin = std::min(message.find('"'), message.size());
     const size_t end = std::min(message.find('"', begin + 1), message.size());
     result += message.substr(0, begin);
-    if (begin < message.size()) result += '"' + cut(message.substr(begin + 1, end - begin - 1), kLongestForeign);
+    if (begin < message.size()) result += '"' + truncated(message.substr(begin + 1, end - begin - 1), kLongestForeign);
     if (end < message.size()) result += '"';
     message.remove_prefix(std::min(end + 1, message.size()));
   }

@@ -7,7 +7,7 @@ namespace {
 
 constexpr size_t kMostShown = 20;
 
-std::string lines(const std::vector<std::string>& messages, size_t count, std::string_view prefix, size_t most) {
+std::string joined_lines(const std::vector<std::string>& messages, size_t count, std::string_view prefix, size_t most) {
   std::string text;
   for (size_t i = 0; i < std::min(messages.size(), most); ++i)
     text += fmt::format("{}{}{}", i > 0 ? "\n" : "", prefix, messages[i]);
@@ -21,10 +21,10 @@ InputErrors::InputErrors(std::vector<std::string> messages, size_t count)
     : InputError({}, ""),
       messages_(std::move(messages)),
       count_(count),
-      what_(lines(messages_, count, "", kMostShown)) {}
+      what_(joined_lines(messages_, count, "", kMostShown)) {}
 
 std::string InputErrors::text(std::string_view prefix, size_t most) const {
-  return lines(messages_, count_, prefix, most);
+  return joined_lines(messages_, count_, prefix, most);
 }
 
 void Problems::add(const InputError& error) {

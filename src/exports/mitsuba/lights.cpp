@@ -64,7 +64,7 @@ void add_surroundings(Context& context, const LightDescription& description, std
   }
   const Params p(info, plugin, context.resolver);
   Surroundings made{description,
-                    made_by(info, plugin.where, [&] { return info.make(p, description.world_from_light); })};
+                    make_checked(info, plugin.where, [&] { return info.make(p, description.world_from_light); })};
   if (const auto* const file = find_param(plugin.params, "filename"))
     made.texels = read_image(p.file("filename"), file->where).image.width;
   else if (plugin.name == "sky")
@@ -84,7 +84,7 @@ void write_light(Context& context, Xml& xml, const LightDescription& description
   const ParsedPlugin& plugin = description.plugin;
   const LightInfo& info = context.registry.lights.get(plugin.name, plugin.where);
   const Params p(info, plugin, context.resolver);
-  const auto light = made_by(info, plugin.where, [&] { return info.make(p, description.world_from_light); });
+  const auto light = make_checked(info, plugin.where, [&] { return info.make(p, description.world_from_light); });
   if (plugin.name == "spot") return write_spot(context, xml, *light, p, plugin);
   if (plugin.name == "distant") {
     const auto irradiance = emitted(context, 1, [&](const SampledWavelengths& lambda) {

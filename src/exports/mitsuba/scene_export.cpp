@@ -49,8 +49,9 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
   const FilmSettings film = Scene::film_settings(description, registry, log);
   const ParsedPlugin& sampler = description.sampler;
   const SamplerInfo& info = registry.samplers.get(sampler.name, sampler.where);
-  const int samples =
-      made_by(info, sampler.where, [&] { return info.make(Params(info, sampler, resolver), {}); })->samples_per_pixel();
+  const int samples = make_checked(info, sampler.where, [&] {
+                        return info.make(Params(info, sampler, resolver), {});
+                      })->samples_per_pixel();
 
   Folder folder(request.folder);
   Problems problems;

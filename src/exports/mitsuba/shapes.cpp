@@ -114,7 +114,7 @@ void Shapes::add(const ShapeDescription& shape, Parts& parts) {
     parts.surfaces.push_back({&shape, std::make_shared<const TriangleMesh>(parallelograms(context_, p, placement))});
     return;
   }
-  MadeShape made = made_by(info, where, [&] { return info.make(p, placement); });
+  MadeShape made = make_checked(info, where, [&] { return info.make(p, placement); });
   if (const auto* set = std::get_if<ObjectInstances>(&made)) return add_table(*set, shape, p, parts);
   for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made)) {
     if (!std::holds_alternative<MeshPtr>(geometry)) {

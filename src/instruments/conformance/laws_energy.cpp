@@ -18,7 +18,7 @@ struct Outgoing {
 };
 
 double power_weight(const Examination& s, const BsdfSample& sample, int lane) {
-  return weight(sample, lane) * static_cast<double>(power_of_radiance(s.bsdf, s.wo, sample.wi)[lane]);
+  return weight(sample, lane) * static_cast<double>(radiance_to_power(s.bsdf, s.wo, sample.wi)[lane]);
 }
 
 /// Mean weight of `sample`, as power; a call without a direction counts as 0. `further` calls are drawn in addition to

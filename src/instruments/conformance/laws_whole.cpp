@@ -74,7 +74,7 @@ namespace {
 /// The quantity that is equal if the directions are exchanged: n_i^2 f(wo, wi), over the square of the index on +z.
 SampledSpectrum reciprocal_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
   const SampledSpectrum f = f_once(bsdf, wo, wi, key);
-  return wi.z < 0 && wo.z > 0 ? f * power_of_radiance(bsdf, wo, wi) : f;
+  return wi.z < 0 && wo.z > 0 ? f * radiance_to_power(bsdf, wo, wi) : f;
 }
 
 /// f in both orders of directions between `a` and patches of the sphere.

@@ -36,7 +36,7 @@ std::unique_ptr<Material> make_ready(const MaterialInfo& info, const ParameterSe
   std::unique_ptr<Material> material;
   try {
     const Params params(info, set.plugin, how.resolver);
-    material = made_by(info, {}, [&] { return info.make(params); });
+    material = make_checked(info, {}, [&] { return info.make(params); });
     if (const auto unread = params.unread(); !unread.empty()) {
       finding.message = fmt::format("declared but never read: {}", fmt::join(unread, ", "));
       finding.p_value = 0;

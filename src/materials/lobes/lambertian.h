@@ -31,7 +31,7 @@ class LambertianBsdf final : public Bsdf {
 
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
     const bool reflects = u.x < reflect_;
-    u.x = reflects ? stretched(u.x, 0, reflect_) : stretched(u.x, reflect_, 1);
+    u.x = reflects ? remap_sample(u.x, 0, reflect_) : remap_sample(u.x, reflect_, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     const float density = pdf(wo, wi);

@@ -44,11 +44,11 @@ class SolvedBsdf final : public Bsdf {
     const Choice& choice = choice_at(wo);
     const float diffuse = choice.surface + choice.reflected;
     if (u.x < choice.surface) {
-      u.x = stretched(u.x, 0, choice.surface);
+      u.x = remap_sample(u.x, 0, choice.surface);
       return sampled(wo, surface_.sample(wo, u, rng), Lobes::reflection | Lobes::glossy | Lobes::surface);
     }
     const bool reflects = u.x < diffuse;
-    u.x = reflects ? stretched(u.x, choice.surface, diffuse) : stretched(u.x, diffuse, 1);
+    u.x = reflects ? remap_sample(u.x, choice.surface, diffuse) : remap_sample(u.x, diffuse, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};

@@ -48,9 +48,9 @@ class ThreeLobeBsdf final : public Bsdf {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
     const float diffuse = choice.surface + choice.subsurface;
-    if (u.x < choice.surface) return sample_surface(choice, wo, {stretched(u.x, 0, choice.surface), u.y}, rng);
+    if (u.x < choice.surface) return sample_surface(choice, wo, {remap_sample(u.x, 0, choice.surface), u.y}, rng);
     const bool reflects = u.x < diffuse;
-    u.x = reflects ? stretched(u.x, choice.surface, diffuse) : stretched(u.x, diffuse, 1);
+    u.x = reflects ? remap_sample(u.x, choice.surface, diffuse) : remap_sample(u.x, diffuse, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};

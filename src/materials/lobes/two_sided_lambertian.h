@@ -40,7 +40,7 @@ class TwoSidedLambertianBsdf final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
     const float reflect = chances_[side_of(wo)].reflect;
     const bool reflects = u.x < reflect;
-    u.x = reflects ? stretched(u.x, 0, reflect) : stretched(u.x, reflect, 1);
+    u.x = reflects ? remap_sample(u.x, 0, reflect) : remap_sample(u.x, reflect, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     const float density = pdf(wo, wi);

@@ -94,7 +94,8 @@ std::optional<BsdfSample> GoniometerBsdf::sample(const Vec3& wo, float, Vec2 u, 
     if (totals[next] > 0) chosen = next, begin = end, end += totals[next] / all;
   const bool reflects = chosen < 2;
   const DirectionGrid& g = reflects ? face.reflected : face.transmitted;
-  const auto [theta, phi] = g.sample(slices.slice[chosen % 2], {std::clamp(stretched(u.x, begin, end), 0.f, 1.f), u.y});
+  const auto [theta, phi] =
+      g.sample(slices.slice[chosen % 2], {std::clamp(remap_sample(u.x, begin, end), 0.f, 1.f), u.y});
   const Vec2 a = azimuth(wo);
   const float sine = std::sin(theta), x = std::cos(phi), y = std::sin(phi);
   const float z = std::cos(theta) * ((wo.z > 0) == reflects ? 1.f : -1.f);

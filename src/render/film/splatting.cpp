@@ -101,10 +101,10 @@ double SplatKernel::Axis::noise() const {
 SplatKernel::SplatKernel(const Filter& filter)
     : axes_{Axis(filter.radius().x,
                  [&](float x) {
-                   return filter.along({x, 0}).x;
+                   return filter.evaluate_axes({x, 0}).x;
                  }),
             Axis(filter.radius().y, [&](float y) {
-              return filter.along({0, y}).y;
+              return filter.evaluate_axes({0, y}).y;
             })} {}
 
 Splatting SplatKernel::splatting() const {
@@ -144,10 +144,10 @@ bool splats(const Filter& filter) {
   const double splatted = kernel.axes_[0].noise() * kernel.axes_[1].noise(),
                importance = noise_of_importance(double(filter.radius().x),
                                                 [&](double x) {
-                                                  return double(filter.along({float(x), 0}).x);
+                                                  return double(filter.evaluate_axes({float(x), 0}).x);
                                                 }) *
                             noise_of_importance(double(filter.radius().y), [&](double y) {
-                              return double(filter.along({0, float(y)}).y);
+                              return double(filter.evaluate_axes({0, float(y)}).y);
                             });
   return splatted < importance;
 }

@@ -90,7 +90,7 @@ SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, cons
 /// Transforms derivatives from an object's space to the instance's. Normal derivatives scale with the normal.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDerivatives& d) {
   d.dpdu = map.vector(d.dpdu), d.dpdv = map.vector(d.dpdv);
-  d.dndu = inverse.normal_out(d.dndu), d.dndv = inverse.normal_out(d.dndv);
+  d.dndu = inverse.normal_from_object(d.dndu), d.dndv = inverse.normal_from_object(d.dndv);
 }
 
 /// Sets the derivatives of a hit, and its frame along dpdu.
@@ -117,9 +117,9 @@ Vec3 of_moderate_length(const Vec3& n) {
 /// Transforms a hit from an object's space to the instance's. `ns` is nullptr if the hit has only its geometric normal.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3& extent, Vec3* ns) {
   hit.p = map.point(hit.p);
-  extent = map.largest_point(extent);
-  hit.ng = inverse.normal_out(of_moderate_length(hit.ng));
-  if (ns) *ns = inverse.normal_out(of_moderate_length(*ns));
+  extent = map.bound_point(extent);
+  hit.ng = inverse.normal_from_object(of_moderate_length(hit.ng));
+  if (ns) *ns = inverse.normal_from_object(of_moderate_length(*ns));
 }
 
 /// Component along the normal `ng`, a unit vector, of a bound of coordinates: errors within the surface's plane do not

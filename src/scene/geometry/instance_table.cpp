@@ -79,7 +79,7 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
     const double reach = largest_coordinate(translation(map_at(bytes(row) + map_offset_, is_double)));
     if (!(reach > kFar && std::isfinite(reach))) continue;
     origin_ = origins.table;
-    if (!is_double) step_ = std::max(step_, float_step(reach));
+    if (!is_double) step_ = std::max(step_, float_spacing(reach));
   }
   if (is_double || origin_ != Vec3d{} || origins.object != Vec3d{}) convert(is_double, origins.object);
   check(path, where, pool);

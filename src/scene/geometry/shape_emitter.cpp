@@ -39,8 +39,10 @@ unsigned faces_of(const ShapeGeometry& geometry) {
 ShapeEmitter::ShapeEmitter(const Surface& surface) : ShapeEmitter(surface, {0, primitives_of(surface.geometry)}) {}
 
 ShapeEmitter::ShapeEmitter(const Surface& surface, Primitives primitives)
-    : geometry_(surface.geometry), is_met_(!surface.alpha || surface.alpha->range().max > 0), primitives_(primitives) {
-  if (is_met_) alpha_ = surface.alpha;
+    : geometry_(surface.geometry),
+      is_intersectable_(!surface.alpha || surface.alpha->range().max > 0),
+      primitives_(primitives) {
+  if (is_intersectable_) alpha_ = surface.alpha;
   if (primitives.count() == 1) {
     area_ = area_of(primitives.first);
     return;

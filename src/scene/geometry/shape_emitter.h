@@ -29,7 +29,7 @@ class ShapeEmitter final : public EmittingSurface {
   Sample sample(Vec2 u) const override;
   double area() const override { return area_; }
   LightBounds bounds() const override;
-  bool is_met() const override { return is_met_; }
+  bool is_intersectable() const override { return is_intersectable_; }
   /// Returns the alpha at a point; 1 without alpha texture.
   float opacity(const EmittingPoint& at) const override {
     return alpha_ ? alpha_->evaluate({.uv = at.uv, .p = at.p, .n = at.ng}) : 1;
@@ -42,7 +42,7 @@ class ShapeEmitter final : public EmittingSurface {
 
   ShapeGeometry geometry_;
   std::shared_ptr<const FloatTexture> alpha_;  ///< nullptr: opaque
-  bool is_met_ = true;
+  bool is_intersectable_ = true;
   Primitives primitives_;
   std::optional<Distribution1D> by_area_;  ///< empty for a single primitive
   double area_ = 0;

@@ -43,7 +43,7 @@ class Triangle {
   std::array<Vec2, 2> default_sides() const {
     const bool is_second_half = primitive_ >= mesh_.halves_from && ((primitive_ - mesh_.halves_from) & 1);
     const Vec2 s = is_second_half ? Vec2{1, 1} : Vec2{1, 0}, t = is_second_half ? Vec2{0, 1} : Vec2{1, 1};
-    if (!mesh_.turned.empty() && mesh_.turned[primitive_]) return {t, s};
+    if (!mesh_.flipped.empty() && mesh_.flipped[primitive_]) return {t, s};
     return {s, t};
   }
 

@@ -103,15 +103,15 @@ class Bands final : public WavelengthStrategy {
     find_range();
   }
 
-  /// Chooses the bands at random: a few samples may miss a band, unlike those of sample_in_turn.
+  /// Chooses the bands at random: a few samples may miss a band, unlike those of sample_for_index.
   SampledWavelengths sample(float u) const override {
     const double turn = double(u) * double(bands_.size());
-    return sample_in_turn(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));
+    return sample_for_index(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));
   }
 
   /// The lanes are a quarter of the bands apart, so that noise common to the lanes of a path changes the brightness of
   /// a pixel and not its colour.
-  SampledWavelengths sample_in_turn(uint64_t index, float u) const override {
+  SampledWavelengths sample_for_index(uint64_t index, float u) const override {
     const size_t count = bands_.size(), lanes = std::min<size_t>(count, kLanes);
     SampledWavelengths lambda;
     lambda.count = static_cast<int>(lanes);

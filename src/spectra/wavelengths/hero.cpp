@@ -102,7 +102,7 @@ class Hero final : public WavelengthStrategy {
     return lambda;
   }
   /// The first lane is where `u` is: it has the stratification of the sampler, which a lane drawn by a BSDF would lose.
-  SampledWavelengths sample_in_turn(uint64_t, float u) const override {
+  SampledWavelengths sample_for_index(uint64_t, float u) const override {
     SampledWavelengths lambda = sample(u);
     lambda.hero = 0;
     return lambda;

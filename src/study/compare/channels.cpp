@@ -107,7 +107,7 @@ uint64_t samples_for_all_channels(const Scene& scene) {
   const size_t bands = scene.wavelengths().bands().size();
   uint64_t samples = 0;
   do {
-    const SampledWavelengths lambda = scene.wavelengths().sample_in_turn(samples++, 0.5f);
+    const SampledWavelengths lambda = scene.wavelengths().sample_for_index(samples++, 0.5f);
     seen.insert(lambda.band.begin(), lambda.band.begin() + lambda.count);
   } while (seen.size() < bands);
   return samples;

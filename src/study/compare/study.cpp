@@ -92,7 +92,7 @@ std::unique_ptr<Integrator> Study::integrator(const Scene& scene, const PluginTe
   const IntegratorInfo& info = registry().integrators.get(over.name, {});
   ParsedPlugin plugin = description_.integrator;
   override_plugin(over, info, {}, plugin);
-  auto integrator = made_by(info, plugin.where, [&] { return info.make(Params(info, plugin, resolver)); });
+  auto integrator = make_checked(info, plugin.where, [&] { return info.make(Params(info, plugin, resolver)); });
   integrator->prepare(scene);
   return integrator;
 }
