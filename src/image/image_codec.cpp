@@ -14,7 +14,7 @@ const ImageCodec& open_image_codec(const std::filesystem::path& file) {
   const auto function = library.find<decltype(frond_image_codec)>("frond_image_codec");
   if (!function) fail({}, "{} \"{}\" has no function frond_image_codec", kWhat, file.string());
   const ImageCodecModule* module = function();
-  if (const std::string problem = mismatch(module->build); !problem.empty())
+  if (const std::string problem = build_mismatch(module->build); !problem.empty())
     fail({}, "{} \"{}\" {}", kWhat, file.string(), problem);
   return *module->codec;
 }

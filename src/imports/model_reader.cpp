@@ -68,7 +68,7 @@ std::string problem_of(const ChildResult& child) {
     const int signal = WTERMSIG(child.status);
     if (signal == SIGXCPU || signal == SIGKILL) return "it takes more time than 60 s and 2 s for each MB of its files";
     if (signal == SIGXFSZ) return "its triangles need more memory than this machine has";
-    return "it is damaged: the reader was ended by " + ending(child.status);
+    return "it is damaged: the reader was ended by " + exit_text(child.status);
   }
   std::string text = child.err.substr(0, 2000);
   std::ranges::replace(text, '\n', ' ');
@@ -79,7 +79,7 @@ std::string problem_of(const ChildResult& child) {
     return "its content is not of the format that its name states, or of a version that is not read, such as the "
            "binary files of glTF 1";
   if (says("bad_alloc")) return "it needs more memory than 1 GB and 128 times its files' size";
-  return text.empty() ? "the reader ended with " + ending(child.status) : text;
+  return text.empty() ? "the reader ended with " + exit_text(child.status) : text;
 }
 
 }  // namespace

@@ -185,7 +185,7 @@ std::string start(const Engine& engine, const fs::path& folder, bool is_quiet) {
   const auto status = run_attached(command, printed);
   if (!status) fail({}, "{} cannot be run", engine.program);
   if (*status != 0)
-    fail({}, "{} ended with {}; this renders what is missing: {}{}", engine.program, ending(*status),
+    fail({}, "{} ended with {}; this renders what is missing: {}{}", engine.program, exit_text(*status),
          command_text(engine, folder), is_quiet ? end_of(printed) : "");
   return "";
 }

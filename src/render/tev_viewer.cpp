@@ -8,7 +8,7 @@ namespace frond {
 
 void TevViewer::show(const Image& image) {
   if (!client_) {
-    client_.emplace(at_, patience_);
+    client_.emplace(at_, timeout_);
     client_->send(create_image_packet(name_, image));
     sent_.resize(image.pixels.size());
   }
@@ -26,7 +26,7 @@ void TevViewer::show(const Image& image) {
 
 void TevViewer::end(bool at_once) {
   constexpr std::chrono::seconds kMostSeconds{3};
-  patience_.end_at(Patience::Clock::now() + (at_once ? std::chrono::seconds{0} : kMostSeconds));
+  timeout_.set_deadline(Timeout::Clock::now() + (at_once ? std::chrono::seconds{0} : kMostSeconds));
   is_last_ = true;
 }
 

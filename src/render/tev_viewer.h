@@ -21,7 +21,7 @@ class TevViewer final : public Viewer {
  private:
   ServerAddress at_;
   std::string name_;
-  Patience patience_{10};
+  Timeout timeout_{10};
   std::optional<TcpClient> client_;
   std::vector<float> sent_;
   std::atomic<bool> is_last_ = false;

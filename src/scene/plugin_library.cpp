@@ -21,7 +21,7 @@ const PluginModule& module_of(const SharedObject& library, const fs::path& file)
   if (module->interface_version != kPluginInterface)
     fail({}, "plug-in \"{}\" has version {} of the plug-in interface, this frond has version {}: build it again",
          file.string(), module->interface_version, kPluginInterface);
-  if (const std::string problem = mismatch(module->build); !problem.empty())
+  if (const std::string problem = build_mismatch(module->build); !problem.empty())
     fail({}, "plug-in \"{}\" {}: build it again", file.string(), problem);
   return *module;
 }

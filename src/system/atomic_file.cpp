@@ -45,7 +45,7 @@ bool is_stream(const fs::path& path) {
 
 NewFile::NewFile(const fs::path& path, const fs::path& shown)
     : target_(follow_links(path)), shown_(shown.empty() ? target_ : shown) {
-  remove_left_files(folder_of(target_));
+  remove_leftover_files(folder_of(target_));
   descriptor_ = open_nameless(folder_of(target_));
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
     path_ = folder_of(target_) / temporary_name();

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-std::string mismatch(const BuildRecord& record) {
+std::string build_mismatch(const BuildRecord& record) {
   if (const std::string_view theirs = record.standard_library; theirs != FROND_STANDARD_LIBRARY)
     return fmt::format("was compiled with {}, this frond with {}", theirs, FROND_STANDARD_LIBRARY);
   if (record.headers == record.headers_end)

@@ -14,6 +14,6 @@ const std::map<std::string_view, std::string_view>& own_headers();
 
 /// Returns why a shared object with this build record is incompatible with this library, as the rest of a sentence that
 /// begins with its name; empty if it is compatible.
-std::string mismatch(const BuildRecord& record);
+std::string build_mismatch(const BuildRecord& record);
 
 }  // namespace frond

@@ -19,7 +19,7 @@ struct CachedFile {
 };
 
 /// Returns whether the name is one of this kind. The folder may contain other files, which must not be deleted.
-bool is_of(const CacheKind& kind, std::string_view file) {
+bool is_cache_file(const CacheKind& kind, std::string_view file) {
   constexpr size_t kHashDigits = 16;
   if (!file.starts_with(kind.name)) return false;
   file.remove_prefix(kind.name.size());
@@ -28,7 +28,7 @@ bool is_of(const CacheKind& kind, std::string_view file) {
 
 /// Returns whether the name is that of a temporary file of replace_file, or of earlier versions.
 bool is_temporary(const CacheKind& kind, std::string_view file) {
-  return file.ends_with(".tmp") && (file.starts_with(".frond-") || is_of(kind, file));
+  return file.ends_with(".tmp") && (file.starts_with(".frond-") || is_cache_file(kind, file));
 }
 
 /// Files of one kind in a folder of the cache.
@@ -41,7 +41,7 @@ class Folder {
       const std::string name = i->path().filename().string();
       if (is_temporary(kind, name))
         add(*i, temporary_);
-      else if (is_of(kind, name))
+      else if (is_cache_file(kind, name))
         add(*i, kept_);
     }
     std::ranges::sort(kept_, std::greater(), &CachedFile::used);

@@ -132,7 +132,7 @@ class SignalsOfChild {
   SignalsOfChild(const SignalsOfChild&) = delete;
   SignalsOfChild& operator=(const SignalsOfChild&) = delete;
 
-  void pass_to(pid_t child) const {
+  void forward_to(pid_t child) const {
     attached_child = child;
     pthread_sigmask(SIG_UNBLOCK, &requests_, nullptr);
   }
@@ -147,7 +147,7 @@ class SignalsOfChild {
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
-  static void pass_on(int signal) {
+  static void forward_signal(int signal) {
     if (attached_child > 0) kill(pid_t(attached_child), signal);
   }
 
@@ -193,7 +193,7 @@ std::optional<int> run_attached(const std::vector<std::string>& command, const s
   const SignalsOfChild signals;
   const auto child = start(command, descriptors);
   if (!child) return {};
-  signals.pass_to(*child);
+  signals.forward_to(*child);
   return wait_for(*child);
 }
 
@@ -205,7 +205,7 @@ bool is_in_path(const std::string& program) {
   return false;
 }
 
-std::string ending(int status) {
+std::string exit_text(int status) {
   if (WIFSIGNALED(status)) return fmt::format("signal {}", WTERMSIG(status));
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }

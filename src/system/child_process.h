@@ -34,6 +34,6 @@ std::optional<int> run_attached(const std::vector<std::string>& command, const s
 bool is_in_path(const std::string& program);
 
 /// Returns the end of a program for an error message: "exit code 1", "signal 9".
-std::string ending(int status);
+std::string exit_text(int status);
 
 }  // namespace frond

@@ -54,7 +54,7 @@ File open(const Source& source) {
   check_kind(source);
   File file(std::fopen(source.path.c_str(), "rb"));
   if (!file) source.refuse("open", errno);
-  note_read(source.path, source.where);
+  record_read(source.path, source.where);
   return file;
 }
 

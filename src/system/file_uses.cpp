@@ -109,7 +109,7 @@ PlannedOutput::~PlannedOutput() {
     std::erase_if(job->second.outputs, [this](const Output& o) { return o.owner == this; });
 }
 
-void note_read(const fs::path& path, const Location& where) {
+void record_read(const fs::path& path, const Location& where) {
   const auto identity = identity_of(path);
   if (!identity) return;
   for_jobs([&](Uses& uses) {

@@ -45,7 +45,7 @@ class PlannedOutput {
 };
 
 /// Notes that a file is read. Throws InputError at `where` if it is a planned output: the job would replace its input.
-void note_read(const std::filesystem::path& path, const Location& where);
+void record_read(const std::filesystem::path& path, const Location& where);
 /// Allows reading a planned output: a job resumes from its own result.
 void allow_reading(const std::filesystem::path& output);
 

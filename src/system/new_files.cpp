@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 }
 
 /// Returns the folder, or the nearest one above it that exists. Throws InputError if that is no folder.
-fs::path existing(const fs::path& folder) {
+fs::path nearest_existing(const fs::path& folder) {
   std::error_code error;
   fs::path found = folder;
   while (!fs::exists(fs::symlink_status(found, error))) {
@@ -39,16 +39,17 @@ fs::path existing(const fs::path& folder) {
 }
 
 /// Without a separator at its end, so that a path above it is another folder.
-fs::path plain(const fs::path& folder) {
+fs::path without_trailing_separator(const fs::path& folder) {
   if (folder.empty()) return ".";
   return folder.has_filename() || folder == folder.root_path() ? folder : folder.parent_path();
 }
 
 }  // namespace
 
-NewFiles::NewFiles(fs::path folder, std::vector<fs::path> inputs) : folder_(plain(folder)), inputs_(std::move(inputs)) {
-  const fs::path base = existing(folder_);
-  remove_left_files(base);
+NewFiles::NewFiles(fs::path folder, std::vector<fs::path> inputs)
+    : folder_(without_trailing_separator(folder)), inputs_(std::move(inputs)) {
+  const fs::path base = nearest_existing(folder_);
+  remove_leftover_files(base);
   for (int attempt = 0; lock_ < 0; ++attempt) {
     temporary_ = base / temporary_name();
     if (mkdir(temporary_.c_str(), 0777) != 0) {
@@ -100,7 +101,7 @@ void NewFiles::write(const std::string& name, std::string_view text) {
 void NewFiles::check(const std::string& name) const {
   std::error_code error;
   const fs::path target = folder_ / name;
-  const fs::path above = existing(target.parent_path());
+  const fs::path above = nearest_existing(target.parent_path());
   if (fs::equivalent(above, target.parent_path(), error)) return check_replaceable(target);
   if (access(above.c_str(), W_OK | X_OK) != 0) refuse(target, std::strerror(errno));
 }
@@ -117,7 +118,7 @@ void NewFiles::make_folder(const fs::path& folder) {
 }
 
 /// The old file and the new one change their names at once, where the file system can do this.
-void NewFiles::place(const fs::path& from, const fs::path& target) {
+void NewFiles::move_into_place(const fs::path& from, const fs::path& target) {
   struct stat ignored {};
   if (lstat(target.c_str(), &ignored) != 0) {
     if (rename(from.c_str(), target.c_str()) != 0) refuse(target, std::strerror(errno));
@@ -138,7 +139,7 @@ void NewFiles::place(const fs::path& from, const fs::path& target) {
 }
 
 /// Latest first: a folder is empty by the time it is removed.
-void NewFiles::undo() {
+void NewFiles::roll_back() {
   for (const Placed& p : std::views::reverse(placed_))
     p.old.empty() ? unlink(p.target.c_str()) : rename(p.old.c_str(), p.target.c_str());
   for (const fs::path& folder : std::views::reverse(made_)) rmdir(folder.c_str());
@@ -159,10 +160,10 @@ void NewFiles::finish() {
     for (const std::string& name : names_) {
       const fs::path target = follow_links(folder_ / name);
       make_folder(target.parent_path());
-      place(temporary_ / name, target);
+      move_into_place(temporary_ / name, target);
     }
   } catch (...) {
-    undo();
+    roll_back();
     throw;
   }
 }

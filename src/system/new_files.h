@@ -40,8 +40,8 @@ class NewFiles {
     std::filesystem::path target, old;  ///< `old`: the file that was replaced, or ""
   };
   void make_folder(const std::filesystem::path& folder);
-  void place(const std::filesystem::path& from, const std::filesystem::path& target);
-  void undo();
+  void move_into_place(const std::filesystem::path& from, const std::filesystem::path& target);
+  void roll_back();
 
   std::filesystem::path folder_, temporary_;
   std::vector<std::filesystem::path> inputs_;

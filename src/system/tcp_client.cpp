@@ -29,7 +29,7 @@ struct Lookup {
   Addresses found;
 };
 
-Lookup look_up(const ServerAddress& at, int flags) {
+Lookup resolve_address(const ServerAddress& at, int flags) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
@@ -42,24 +42,24 @@ Lookup look_up(const ServerAddress& at, int flags) {
 /// Calls `ready` with a time to wait until it returns true. Returns false when the time is over. Each wait is at most
 /// 50 ms, because another thread may set the deadline meanwhile.
 template <class Ready>
-bool wait_until(const Patience& patience, const Ready& ready) {
+bool wait_until(const Timeout& timeout, const Ready& ready) {
   using namespace std::chrono_literals;
-  const auto limit = patience.limit();
+  const auto limit = timeout.limit();
   for (;;) {
-    const auto left = std::min(limit, patience.end()) - Patience::Clock::now();
+    const auto left = std::min(limit, timeout.deadline()) - Timeout::Clock::now();
     if (ready(std::clamp(std::chrono::ceil<std::chrono::milliseconds>(left), 0ms, 50ms))) return true;
     if (left <= 0s) return false;
   }
 }
 
 /// Numeric addresses need no look-up. A name is looked up in a detached thread, because getaddrinfo has no time-out.
-Addresses addresses_of(const ServerAddress& at, const Patience& patience) {
-  Lookup lookup = look_up(at, AI_NUMERICHOST);
+Addresses addresses_of(const ServerAddress& at, const Timeout& timeout) {
+  Lookup lookup = resolve_address(at, AI_NUMERICHOST);
   if (lookup.error != 0) {
-    std::packaged_task<Lookup()> task([at] { return look_up(at, 0); });
+    std::packaged_task<Lookup()> task([at] { return resolve_address(at, 0); });
     std::future<Lookup> result = task.get_future();
     std::thread(std::move(task)).detach();
-    if (!wait_until(patience, [&](auto time) { return result.wait_for(time) == std::future_status::ready; }))
+    if (!wait_until(timeout, [&](auto time) { return result.wait_for(time) == std::future_status::ready; }))
       fail({}, "cannot connect to {}: the name was not found in time", at.text());
     lookup = result.get();
   }
@@ -68,18 +68,18 @@ Addresses addresses_of(const ServerAddress& at, const Patience& patience) {
 }
 
 /// Returns whether the socket accepts bytes, or has an error, before the time is over.
-bool wait_for(int socket, const Patience& patience) {
-  return wait_until(patience, [socket](std::chrono::milliseconds time) {
+bool wait_for(int socket, const Timeout& timeout) {
+  return wait_until(timeout, [socket](std::chrono::milliseconds time) {
     pollfd wanted{socket, POLLOUT, 0};
     return poll(&wanted, 1, int(time.count())) > 0;
   });
 }
 
 /// Connects a non-blocking socket. Returns an error number, or 0.
-int connect_to(int socket, const addrinfo& to, const Patience& patience) {
+int connect_to(int socket, const addrinfo& to, const Timeout& timeout) {
   if (connect(socket, to.ai_addr, to.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS && errno != EINTR) return errno;
-  if (!wait_for(socket, patience)) return ETIMEDOUT;
+  if (!wait_for(socket, timeout)) return ETIMEDOUT;
   int error = 0;
   socklen_t size = sizeof error;
   return getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
@@ -107,16 +107,16 @@ ServerAddress parse_server_address(std::string_view text, std::string_view optio
   return {std::string(host), port};
 }
 
-Patience::Clock::time_point Patience::limit() const {
+Timeout::Clock::time_point Timeout::limit() const {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds_);
 }
 
-TcpClient::TcpClient(const ServerAddress& to, const Patience& patience) : name_(to.text()), patience_(patience) {
+TcpClient::TcpClient(const ServerAddress& to, const Timeout& timeout) : name_(to.text()), timeout_(timeout) {
   int error = 0;
-  const Addresses all = addresses_of(to, patience);
+  const Addresses all = addresses_of(to, timeout);
   for (const addrinfo* address = all.get(); address; address = address->ai_next) {
     socket_ = socket(address->ai_family, address->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, address->ai_protocol);
-    error = socket_ < 0 ? errno : connect_to(socket_, *address, patience);
+    error = socket_ < 0 ? errno : connect_to(socket_, *address, timeout);
     if (error == 0) return;
     if (socket_ >= 0) close(socket_);
     socket_ = -1;
@@ -133,9 +133,9 @@ void TcpClient::send(std::span<const unsigned char> bytes) {
       bytes = bytes.subspan(size_t(sent));
     else if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)
       fail({}, "{} has closed the connection: {}", name_, std::strerror(errno));
-    else if (!wait_for(socket_, patience_))
+    else if (!wait_for(socket_, timeout_))
       fail({}, "{} takes no more data", name_);
-    if (Patience::Clock::now() >= patience_.end() && !bytes.empty()) fail({}, "{} takes data too slowly", name_);
+    if (Timeout::Clock::now() >= timeout_.end() && !bytes.empty()) fail({}, "{} takes data too slowly", name_);
   }
 }
 

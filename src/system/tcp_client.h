@@ -22,14 +22,14 @@ ServerAddress parse_server_address(std::string_view text, std::string_view optio
 
 /// Time-outs of a connection: a limit in seconds for each wait, and a deadline for all of them. Another thread may set
 /// the deadline during a wait.
-class Patience {
+class Timeout {
  public:
   using Clock = std::chrono::steady_clock;
-  explicit Patience(double seconds) : seconds_(seconds) {}
+  explicit Timeout(double seconds) : seconds_(seconds) {}
 
   /// Sets the deadline; without it there is none.
-  void end_at(Clock::time_point end) { end_ = end; }
-  Clock::time_point end() const { return end_; }
+  void set_deadline(Clock::time_point end) { end_ = end; }
+  Clock::time_point deadline() const { return end_; }
   /// Returns when a wait that begins now ends, unless the deadline is earlier.
   Clock::time_point limit() const;
 
@@ -42,9 +42,9 @@ class Patience {
 /// by one thread at a time.
 class TcpClient {
  public:
-  /// Connects. `patience` must outlive this object. Throws InputError, with the reason, if no connection is made in
+  /// Connects. `timeout` must outlive this object. Throws InputError, with the reason, if no connection is made in
   /// time.
-  TcpClient(const ServerAddress& to, const Patience& patience);
+  TcpClient(const ServerAddress& to, const Timeout& timeout);
   ~TcpClient();
   TcpClient(const TcpClient&) = delete;
   TcpClient& operator=(const TcpClient&) = delete;
@@ -55,7 +55,7 @@ class TcpClient {
 
  private:
   std::string name_;
-  const Patience& patience_;
+  const Timeout& timeout_;
   int socket_ = -1;
 };
 

@@ -33,7 +33,7 @@ bool is_named(int file, const fs::path& path) {
 
 /// Opens a file or a folder to lock it; -1 for other kinds. Files are opened for writing, because NFS makes an
 /// exclusive lock of a lock for writing.
-int open_left(const fs::path& path) {
+int open_for_locking(const fs::path& path) {
   const int file = open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   return file >= 0 || errno != EISDIR ? file : open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
@@ -53,7 +53,7 @@ std::string temporary_name() {
   return fmt::format(".frond-{}-{}.tmp", getpid(), count++);
 }
 
-void remove_left_files(const fs::path& folder) {
+void remove_leftover_files(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
   const std::lock_guard lock(mutex);
@@ -62,7 +62,7 @@ void remove_left_files(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path path = entry->path();
     if (!is_temporary_name(path.filename().string())) continue;
-    const int file = open_left(path);
+    const int file = open_for_locking(path);
     if (file < 0) continue;
     std::error_code ignored;
     if (flock(file, LOCK_EX | LOCK_NB) == 0 && is_named(file, path)) fs::remove_all(path, ignored);

@@ -13,15 +13,15 @@ std::filesystem::path follow_links(const std::filesystem::path& path);
 /// Returns the folder of a file; "." without one.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Returns the next temporary name of this process. No name is returned twice, since remove_left_files of another
+/// Returns the next temporary name of this process. No name is returned twice, since remove_leftover_files of another
 /// process may still hold a file that had it.
 std::string temporary_name();
 
 /// Deletes what killed processes have left in a folder: files and folders of temporary names whose lock can be taken.
 /// Does so once for each folder.
-void remove_left_files(const std::filesystem::path& folder);
+void remove_leftover_files(const std::filesystem::path& folder);
 
-/// Locks a new file or folder, open as `descriptor`, against remove_left_files. Returns false if that was faster.
+/// Locks a new file or folder, open as `descriptor`, against remove_leftover_files. Returns false if that was faster.
 /// Without locks in a file system nothing is removed there.
 bool lock_new(int descriptor, const std::filesystem::path& path);
 

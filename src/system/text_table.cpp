@@ -17,7 +17,7 @@ std::string_view trimmed(std::string_view text) {
 
 /// Returns the index behind the double quotes that begin at `begin`, in which "" is one of them; if there are none, or
 /// if they are not closed, `begin`.
-size_t behind_quotes(std::string_view line, size_t begin) {
+size_t end_of_quotes(std::string_view line, size_t begin) {
   if (begin >= line.size() || line[begin] != '"') return begin;
   for (size_t quote = begin; (quote = line.find('"', quote + 1)) != line.npos; ++quote)
     if (quote + 1 >= line.size() || line[quote + 1] != '"') return quote + 1;
@@ -30,7 +30,7 @@ template <class Test>
 size_t find_outside_quotes(std::string_view line, size_t begin, const Test& is_wanted) {
   for (size_t i = begin; i < line.size(); ++i) {
     if (line[i] == '"') {
-      const size_t end = behind_quotes(line, i);
+      const size_t end = end_of_quotes(line, i);
       if (end > i) i = end;
       if (i >= line.size()) break;
     }
@@ -174,7 +174,7 @@ void TextTable::split(std::string_view line) {
   for (size_t begin = 0; begin <= line.size();) {
     while (begin < line.size() && (by_blanks ? is_blank(line[begin]) : line[begin] == ' ')) ++begin;
     if (by_blanks && begin == line.size()) break;
-    size_t end = behind_quotes(line, begin);
+    size_t end = end_of_quotes(line, begin);
     if (by_blanks)
       while (end < line.size() && !is_blank(line[end])) ++end;
     else

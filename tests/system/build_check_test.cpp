@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 /// As the linker leaves it: entries with zeros between them.
 std::string problem_of(const std::string& section) {
-  return mismatch({.headers = section.data(), .headers_end = section.data() + section.size()});
+  return build_mismatch({.headers = section.data(), .headers_end = section.data() + section.size()});
 }
 std::string entry(const std::string& header, size_t zeros = 1) {
   return header + " " + std::string(own_headers().at(header)) + std::string(zeros, '\0');
@@ -36,8 +36,9 @@ TEST(BuildCheck, ThoseThatDifferAreNamedOnce) {
 }
 
 TEST(BuildCheck, NoRecordIsNoPermission) {
-  EXPECT_THAT(mismatch({.headers = nullptr, .headers_end = nullptr}), HasSubstr("does not say which headers"));
-  EXPECT_THAT(mismatch({.standard_library = "libc++"}), AllOf(HasSubstr("libc++"), EndsWith(FROND_STANDARD_LIBRARY)));
+  EXPECT_THAT(build_mismatch({.headers = nullptr, .headers_end = nullptr}), HasSubstr("does not say which headers"));
+  EXPECT_THAT(build_mismatch({.standard_library = "libc++"}),
+              AllOf(HasSubstr("libc++"), EndsWith(FROND_STANDARD_LIBRARY)));
 }
 
 }  // namespace

@@ -33,23 +33,23 @@ TEST(ServerAddresses, ThatAreNoneAreRefused) {
 
 TEST(TcpClients, SayWhyThereIsNoConnection) {
   const Port port;
-  const Patience patience(10);
+  const Timeout timeout(10);
   EXPECT_THAT(error_of([&] {
-                TcpClient({"127.0.0.1", port.number()}, patience);
+                TcpClient({"127.0.0.1", port.number()}, timeout);
               }),
               HasSubstr("cannot connect to " + port.address() + ": Connection refused"));
   EXPECT_THAT(error_of([&] {
-                TcpClient({"name.invalid", 1}, patience);
+                TcpClient({"name.invalid", 1}, timeout);
               }),
               HasSubstr("cannot connect to name.invalid:1: "));
 }
 
 TEST(TcpClients, SendAllBytes) {
   TevListener listener(TevListener::Manner::reads);
-  const Patience patience(60);
+  const Timeout timeout(60);
   std::vector<unsigned char> packet(10'000'000);  // one of nonsense
   packet[0] = 0x80, packet[1] = 0x96, packet[2] = 0x98;
-  { TcpClient({"127.0.0.1", listener.port()}, patience).send(packet); }
+  { TcpClient({"127.0.0.1", listener.port()}, timeout).send(packet); }
   listener.join();
   EXPECT_EQ(listener.bytes(), packet.size());
   EXPECT_THAT(listener.faults(), ::testing::ElementsAre("type 0 of \"\""));
@@ -57,8 +57,8 @@ TEST(TcpClients, SendAllBytes) {
 
 TEST(TcpClients, LearnThatTheOtherSideHasGone) {
   TevListener listener(TevListener::Manner::closes_early);
-  const Patience patience(60);
-  TcpClient client({"127.0.0.1", listener.port()}, patience);
+  const Timeout timeout(60);
+  TcpClient client({"127.0.0.1", listener.port()}, timeout);
   const std::vector<unsigned char> bytes(1 << 20);
   EXPECT_THAT(error_of([&] {
                 for (;;) client.send(bytes);
@@ -70,16 +70,16 @@ TEST(TcpClients, WaitForTheirPatienceAndNoLonger) {
   const std::vector<unsigned char> bytes(64 << 20);
   {
     TevListener listener(TevListener::Manner::never_reads);
-    const Patience patience(0.1);
-    TcpClient client({"127.0.0.1", listener.port()}, patience);
+    const Timeout timeout(0.1);
+    TcpClient client({"127.0.0.1", listener.port()}, timeout);
     EXPECT_THAT(error_of([&] { client.send(bytes); }), HasSubstr("takes no more data"));
   }
   TevListener listener(TevListener::Manner::never_reads);
-  Patience patience(1e6);
-  TcpClient client({"127.0.0.1", listener.port()}, patience);
-  std::jthread other([&patience] {
+  Timeout timeout(1e6);
+  TcpClient client({"127.0.0.1", listener.port()}, timeout);
+  std::jthread other([&timeout] {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    patience.end_at(Patience::Clock::now());
+    timeout.set_deadline(Timeout::Clock::now());
   });
   EXPECT_THAT(error_of([&] { client.send(bytes); }), HasSubstr("data"));
 }

@@ -45,7 +45,7 @@ std::list<PlannedOutput> planned_outputs(const Arguments& args) {
         for (const std::string& path : args.words(p->name)) act(*p, path);
   };
   each_file(PathUse::read, [](const JobParam&, const std::string& path) {
-    if (path != "-") note_read(path, {});
+    if (path != "-") record_read(path, {});
   });
   std::list<PlannedOutput> outputs;
   each_file(PathUse::write, [&](const JobParam& p, const std::string& path) {
