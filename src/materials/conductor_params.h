@@ -52,8 +52,8 @@ class Metal {
     check_range(*eta_, wavelengths, where_, names_.eta);
     check_range(*k_, wavelengths, where_, names_.k);
     // Fixed wavelengths are sampled once, not at each hit.
-    eta_ = known_at(eta_, wavelengths.fixed_nm());
-    k_ = known_at(k_, wavelengths.fixed_nm());
+    eta_ = precompute_at(eta_, wavelengths.fixed_nm());
+    k_ = precompute_at(k_, wavelengths.fixed_nm());
   }
 
   /// Indices relative to vacuum, at the wavelengths of a path.

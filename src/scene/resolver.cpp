@@ -282,7 +282,7 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
     warn_of_clamping(p, double(s->max_value()));
     s = std::make_shared<ClampedSpectrum>(std::move(s));
   }
-  return known_at(std::move(s), wavelengths_.fixed_nm());
+  return precompute_at(std::move(s), wavelengths_.fixed_nm());
 }
 
 std::filesystem::path SceneResolver::file(const std::string& name, const Location& where) {

@@ -29,14 +29,14 @@ TEST(FixedWavelengths, AreLookedUpOnce) {
   int calls = 0;
   const auto spectrum = std::make_shared<Counted>(calls);
   constexpr std::array kNm{608.f, 551.f, 455.f};
-  const SpectrumPtr known = known_at(spectrum, kNm);
+  const SpectrumPtr known = precompute_at(spectrum, kNm);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(known->sample(lambda_of({608, 551, 455})), spectrum->sample(lambda_of({608, 551, 455})));
   EXPECT_EQ(calls, 6);  // the spectrum's own
   EXPECT_EQ(known->sample(lambda_of({608, 551, 456})), spectrum->sample(lambda_of({608, 551, 456})));
   EXPECT_EQ(known->sample(lambda_of({608, 551})), spectrum->sample(lambda_of({608, 551})));
   EXPECT_EQ(known->at(700), 0.7f);
-  EXPECT_EQ(known_at(spectrum, {}), spectrum);
+  EXPECT_EQ(precompute_at(spectrum, {}), spectrum);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ OCIO::ConstConfigRcPtr read_config(const std::filesystem::path& path) try {
 /// Conversions that are applied one after the other.
 using Chain = std::vector<OCIO::ConstProcessorRcPtr>;
 
-void run(const Chain& chain, std::span<float> rgb) {
+void apply(const Chain& chain, std::span<float> rgb) {
   assert(rgb.size() % 3 == 0);
   if (rgb.empty()) return;
   for (const auto& processor : chain) {
@@ -60,7 +60,7 @@ void run(const Chain& chain, std::span<float> rgb) {
 
 /// Returns the names for the indices 0 to count - 1, which OpenColorIO returns one at a time.
 template <class Get>
-std::vector<std::string> list(int count, const Get& get) {
+std::vector<std::string> collect_names(int count, const Get& get) {
   std::vector<std::string> names;
   for (int i = 0; i < count; ++i) names.emplace_back(get(i));
   return names;
@@ -70,7 +70,7 @@ std::vector<std::string> list(int count, const Get& get) {
   fail({}, "unknown {} \"{}\"{}", what, name, suggestion(name, {known.begin(), known.end()}));
 }
 
-void require(std::string_view what, std::string_view name, const std::vector<std::string>& known) {
+void check_known(std::string_view what, std::string_view name, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), name) == known.end()) fail_unknown(what, name, known);
 }
 
@@ -104,7 +104,7 @@ class ColorManager::Impl {
     const std::string display(display_or_empty.empty() ? config_->getDefaultDisplay() : display_or_empty);
     const std::vector<std::string> known_views = views(display);
     const std::string view(view_or_empty.empty() ? config_->getDefaultView(display.c_str()) : view_or_empty);
-    require(fmt::format("view of display {}", display), view, known_views);
+    check_known(fmt::format("view of display {}", display), view, known_views);
     return {display, view};
   }
 
@@ -112,7 +112,7 @@ class ColorManager::Impl {
     const auto [display, view] = names(display_or_empty, view_or_empty);
     Place source = find(from);
     Chain chain;
-    if (source.config != config_ && !knows_aces(config_) && config_->getColorSpace(source.space.c_str())) {
+    if (source.config != config_ && !has_aces(config_) && config_->getColorSpace(source.space.c_str())) {
       source.config = config_;  // without ACES2065-1, use the configuration's own space of that name
     } else if (source.config != config_) {
       const std::string common = aces(config_);
@@ -125,7 +125,8 @@ class ColorManager::Impl {
   }
 
   std::vector<std::string> spaces() const {
-    auto names = list(config_->getNumColorSpaces(), [this](int i) { return config_->getColorSpaceNameByIndex(i); });
+    auto names =
+        collect_names(config_->getNumColorSpaces(), [this](int i) { return config_->getColorSpaceNameByIndex(i); });
     if (config_ == builtin_) return names;
     for (int i = 0; i < builtin_->getNumColorSpaces(); ++i)
       if (const char* ours = builtin_->getColorSpaceNameByIndex(i); !config_->getColorSpace(ours))
@@ -134,12 +135,13 @@ class ColorManager::Impl {
   }
 
   std::vector<std::string> displays() const {
-    return list(config_->getNumDisplays(), [this](int i) { return config_->getDisplay(i); });
+    return collect_names(config_->getNumDisplays(), [this](int i) { return config_->getDisplay(i); });
   }
 
   std::vector<std::string> views(const std::string& display) const {
-    require("display", display, displays());
-    return list(config_->getNumViews(display.c_str()), [&](int i) { return config_->getView(display.c_str(), i); });
+    check_known("display", display, displays());
+    return collect_names(config_->getNumViews(display.c_str()),
+                         [&](int i) { return config_->getView(display.c_str(), i); });
   }
 
  private:
@@ -153,7 +155,7 @@ class ColorManager::Impl {
   }
 
   static constexpr std::array kAcesNames{"aces_interchange", "ACES2065-1", "ACES - ACES2065-1"};
-  static bool knows_aces(const OCIO::ConstConfigRcPtr& config) {
+  static bool has_aces(const OCIO::ConstConfigRcPtr& config) {
     return std::any_of(kAcesNames.begin(), kAcesNames.end(), [&](auto name) { return config->getColorSpace(name); });
   }
 
@@ -190,12 +192,12 @@ ColorManager::ColorManager(ColorManager&&) noexcept = default;
 ColorManager& ColorManager::operator=(ColorManager&&) noexcept = default;
 
 void ColorManager::convert(std::span<float> rgb, std::string_view from, std::string_view to) const {
-  run(build([&] { return impl_->conversion(from, to); }), rgb);
+  apply(build([&] { return impl_->conversion(from, to); }), rgb);
 }
 
 void ColorManager::display(std::span<float> rgb, std::string_view from, std::string_view display,
                            std::string_view view) const {
-  run(build([&] { return impl_->display(from, display, view); }), rgb);
+  apply(build([&] { return impl_->display(from, display, view); }), rgb);
 }
 
 void ColorManager::check_display(std::string_view from, std::string_view display, std::string_view view) const {

@@ -75,7 +75,7 @@ Residual residual(const Response& response, const Triple& c, const Triple& targe
 
 /// Returns the Levenberg-Marquardt step: the Gauss-Newton step for damping 0, a short step along the negative gradient
 /// for large damping.
-Triple step(const Residual& r, double damping) {
+Triple levenberg_marquardt_step(const Residual& r, double damping) {
   const auto& j = r.jacobian.row;
   Matrix3 normal;
   Triple gradient{};
@@ -89,7 +89,7 @@ Triple step(const Residual& r, double damping) {
 }
 
 /// Returns the coefficients of the flat reflectance of luminance y, the start of the iteration; exact for greys.
-Triple start(double y) {
+Triple initial_coefficients(double y) {
   y = std::clamp(y, 1e-6, 1 - 1e-6);
   return {0, 0, (y - 0.5) / std::sqrt(y * (1 - y))};
 }
@@ -102,12 +102,12 @@ bool is_smooth(const Triple& c) {
 }
 
 /// Improves the coefficients `c` by Levenberg-Marquardt steps; returns the remaining error, the largest in X, Y or Z.
-double improve(const Response& response, const Triple& target, double damping, Triple& c) {
+double minimise_residual(const Response& response, const Triple& target, double damping, Triple& c) {
   constexpr double kSolved = 1e-7, kStuck = 1e9;
   constexpr int kMostSteps = 50;
   Residual best = residual(response, c, target);
   for (int i = 0; i < kMostSteps && best.largest() > kSolved && damping < kStuck; ++i) {
-    const Triple d = step(best, damping);
+    const Triple d = levenberg_marquardt_step(best, damping);
     const Triple next{c[0] + d[0], c[1] + d[1], c[2] + d[2]};
     const Residual r = residual(response, next, target);
     const bool better = is_smooth(next) && r.square() < best.square();  // false for NaN
@@ -177,9 +177,9 @@ float SigmoidPolynomial::max_value() const {
 
 SigmoidFit fit_reflectance(const ColorSpace& space, const Triple& rgb) {
   const Triple target = target_xyz(space, rgb);
-  Triple c = start(target[1]);
-  improve(coarse_response(), target, 1e-3, c);
-  const double error = improve(fine_response(), target, 1e-7, c);
+  Triple c = initial_coefficients(target[1]);
+  minimise_residual(coarse_response(), target, 1e-3, c);
+  const double error = minimise_residual(fine_response(), target, 1e-7, c);
   return {SigmoidPolynomial(c), error};
 }
 
@@ -200,8 +200,8 @@ ScaledReflectance fit_scaled(const ColorSpace& space, const Triple& rgb, const L
 
 void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_flat, Triple& c) {
   const Triple target = target_xyz(space, rgb);
-  if (from_flat) c = start(target[1]);
-  improve(coarse_response(), target, from_flat ? 1e-3 : 1e-6, c);
+  if (from_flat) c = initial_coefficients(target[1]);
+  minimise_residual(coarse_response(), target, from_flat ? 1e-3 : 1e-6, c);
 }
 
 SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where,

@@ -6,9 +6,9 @@ namespace frond {
 namespace {
 
 /// Spectrum with its values at fixed wavelengths stored.
-class KnownSpectrum final : public Spectrum {
+class PrecomputedSpectrum final : public Spectrum {
  public:
-  KnownSpectrum(SpectrumPtr spectrum, std::span<const float> nm) : spectrum_(std::move(spectrum)) {
+  PrecomputedSpectrum(SpectrumPtr spectrum, std::span<const float> nm) : spectrum_(std::move(spectrum)) {
     for (const float wavelength : nm) {
       const int lane = known_.count++;
       known_.nm[size_t(lane)] = wavelength;
@@ -32,13 +32,13 @@ class KnownSpectrum final : public Spectrum {
 
 }  // namespace
 
-SpectrumPtr known_at(SpectrumPtr spectrum, std::span<const float> nm) {
+SpectrumPtr precompute_at(SpectrumPtr spectrum, std::span<const float> nm) {
   if (nm.empty() || nm.size() > kLanes) return spectrum;
-  return std::make_shared<KnownSpectrum>(std::move(spectrum), nm);
+  return std::make_shared<PrecomputedSpectrum>(std::move(spectrum), nm);
 }
 
-const Spectrum* base_of_known(const Spectrum& spectrum) {
-  const auto* known = dynamic_cast<const KnownSpectrum*>(&spectrum);
+const Spectrum* base_of_precomputed(const Spectrum& spectrum) {
+  const auto* known = dynamic_cast<const PrecomputedSpectrum*>(&spectrum);
   return known ? &known->base() : nullptr;
 }
 

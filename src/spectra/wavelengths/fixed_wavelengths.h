@@ -8,9 +8,9 @@ namespace frond {
 
 /// Returns the spectrum with its values at these wavelengths (nm) stored: `sample` needs no look-up for paths that
 /// carry exactly them. Returns the spectrum itself if there are no wavelengths or more than kLanes.
-SpectrumPtr known_at(SpectrumPtr spectrum, std::span<const float> nm);
+SpectrumPtr precompute_at(SpectrumPtr spectrum, std::span<const float> nm);
 
-/// Returns the spectrum whose values known_at has stored; nullptr for any other spectrum.
-const Spectrum* base_of_known(const Spectrum& spectrum);
+/// Returns the spectrum whose values precompute_at has stored; nullptr for any other spectrum.
+const Spectrum* base_of_precomputed(const Spectrum& spectrum);
 
 }  // namespace frond

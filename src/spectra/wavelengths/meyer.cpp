@@ -53,7 +53,7 @@ class Meyer final : public WavelengthStrategy {
     lambda_.pdf.fill(1);
     lambda_.active.fill(true);
     lambda_.count = kLanes;
-    if (p.string("white") == "D65") keep_d65();
+    if (p.string("white") == "D65") normalise_to_d65();
   }
 
   SampledWavelengths sample(float) const override { return lambda_; }
@@ -69,7 +69,7 @@ class Meyer final : public WavelengthStrategy {
 
  private:
   /// Scales X, Y and Z so that D65 has its exact colour.
-  void keep_d65() {
+  void normalise_to_d65() {
     const Triple ours = sensor(unit_d65()->sample(lambda_), lambda_).color(), exact = to_xyz(*unit_d65());
     for (Triple& xyz : quadrature_.xyz)
       for (size_t c = 0; c < 3; ++c) xyz[c] *= exact[c] / ours[c];

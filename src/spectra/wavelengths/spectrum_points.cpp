@@ -18,7 +18,7 @@ void append_points_nm(const Spectrum& spectrum, std::vector<double>& nm) {
     append_points_nm(scaled->base(), nm);
   else if (const Spectrum* extended = base_of_extended(spectrum))
     append_points_nm(*extended, nm);
-  else if (const Spectrum* known = base_of_known(spectrum))
+  else if (const Spectrum* known = base_of_precomputed(spectrum))
     append_points_nm(*known, nm);
 }
 
