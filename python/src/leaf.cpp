@@ -71,7 +71,7 @@ nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::
     if (!n.absorbs()) continue;
     std::vector<double> specific;
     for (const double nm : wavelengths_nm) specific.push_back(leaf::specific_absorption(n, p.absorption_tables, nm));
-    absorption[n.name.data()] = to_array(specific, {wavelengths_nm.size()}), amount[n.name.data()] = n.of(p);
+    absorption[n.name.data()] = to_array(specific, {wavelengths_nm.size()}), amount[n.name.data()] = n.value(p);
   }
   d["specific_absorption"] = absorption, d["amount"] = amount;
   d["thickness"] = p.thickness_m, d["mesophyllfraction"] = p.mesophyll_fraction;

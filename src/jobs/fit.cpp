@@ -236,9 +236,9 @@ void check_fitted(const leaf::TissueParams& fitted, const MaterialInfo& material
   // A concentration that is given per area depends on the fitted thickness.
   for (const leaf::LeafNumber& n : leaf::leaf_parameters()) {
     const Param* p = find_param(material, n.name);
-    if (p && !p->range.contains(n.of(fitted)))
+    if (p && !p->range.contains(n.value(fitted)))
       fail({}, "{}: the contents per area need {} {:g}, outside its range {:g} to {:g} {}", option, n.name,
-           n.of(fitted), p->range.min, p->range.max, p->unit);
+           n.value(fitted), p->range.min, p->range.max, p->unit);
   }
 }
 

@@ -109,15 +109,15 @@ leaf::DepthMap LeafParams::read(const Params& p) {
   for (const LeafNumber& n : leaf::leaf_parameters()) {
     if (!p.given(n.name)) continue;
     if (!p.is_texture(n.name)) {
-      n.of(tissue_) = p.real(n.name);
+      n.value(tissue_) = p.real(n.name);
       continue;
     }
     const auto texture = p.float_texture(n.name);
     // The largest value bounds the depth; DepthMap evaluates the texture itself.
-    n.of(tissue_) = texture->range().max;
+    n.value(tissue_) = texture->range().max;
     if (texture->is_constant()) continue;
     if (n.acts_by_depth())
-      varying.push_back({[&n](TissueParams& t) -> double& { return n.of(t); }, texture});
+      varying.push_back({[&n](TissueParams& t) -> double& { return n.value(t); }, texture});
     else
       aspects_.push_back({&n, texture});
   }

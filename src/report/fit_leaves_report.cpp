@@ -32,7 +32,7 @@ void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Ta
   for (const bool follows : {true, false})
     for (const LeafNumber& n : leaf::leaf_parameters())
       if (!n.is_fitted() && n.action != leaf::LeafAction::surface && n.follows.empty() != follows && is_stated(n))
-        table.add(std::string(n.name), leaf.error.empty() ? n.of(leaf.result.params) : kNone);
+        table.add(std::string(n.name), leaf.error.empty() ? n.value(leaf.result.params) : kNone);
   table.add("undetermined", fmt::format("{}", fmt::join(undetermined, " ")));
 }
 

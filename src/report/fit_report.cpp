@@ -101,7 +101,7 @@ std::string fit_scene(const FitReport& report, const std::string& name) {
                        : fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"", name, report.material);
   text += fmt::format(" \"string specimen\" \"{}\"\n", result.specimen->name);
   for (const LeafNumber* n : said(report))
-    text += fmt::format("    \"float {}\" {:.6g}\n", n->name, n->of(result.params));
+    text += fmt::format("    \"float {}\" {:.6g}\n", n->name, n->value(result.params));
   if (is_prospect(result)) text += "    \"string absorption\" \"prospect\"\n";
   if (result.params.sieve_and_detour) text += "    \"bool sieve\" true\n";
   return text;
@@ -110,7 +110,7 @@ std::string fit_scene(const FitReport& report, const std::string& name) {
 std::string fit_words(const FitReport& report, const std::string& material) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("{},specimen={}", material, result.specimen->name);
-  for (const LeafNumber* n : said(report)) text += fmt::format(",{}={:.6g}", n->name, n->of(result.params));
+  for (const LeafNumber* n : said(report)) text += fmt::format(",{}={:.6g}", n->name, n->value(result.params));
   if (is_prospect(result)) text += ",absorption=prospect";
   if (result.params.sieve_and_detour) text += ",sieve=true";
   return text;
@@ -132,8 +132,8 @@ std::string fit_text(const FitReport& report) {
     text += fmt::format("  {:<20} {:>10.4g} {:<8}{}{}\n", n.variable->name, n.value, n.variable->unit,
                         n.is_identified() ? fmt::format("+- {:.2g} %", 100 * n.relative_error) : "", note(n));
   for (const LeafNumber& n : leaf::leaf_parameters())
-    if (!n.follows.empty() && (n.of(result.params) > 0 || !n.only_with))
-      text += fmt::format("  {} {:.4g} follows {}, which absorbs alike;\n", n.name, n.of(result.params), n.follows);
+    if (!n.follows.empty() && (n.value(result.params) > 0 || !n.only_with))
+      text += fmt::format("  {} {:.4g} follows {}, which absorbs alike;\n", n.name, n.value(result.params), n.follows);
   text += fmt::format("  mesophyllfraction {:.4g} acts by its product with the thickness alone\n",
                       result.params.mesophyll_fraction);
   constexpr double kExact = 1e-9;  // relative error of a content that was given
@@ -184,7 +184,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
     spectra.add_flag("outlier", result.fitted[i].is_outlier);
   }
   for (const LeafNumber* n : said(report))
-    leaf.add("name", std::string(n->name)), leaf.add("value", n->of(result.params));
+    leaf.add("name", std::string(n->name)), leaf.add("value", n->value(result.params));
   for (const FittedNumber& n : result.numbers) {
     numbers.add("name", std::string(n.variable->name));
     numbers.add("value", n.value);

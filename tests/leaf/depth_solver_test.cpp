@@ -35,7 +35,7 @@ std::array<double, 2> by_elimination(const Tissue& tissue, double theta_deg, int
   const Chain chain(tissue, nodes, 1);
   Sources sources{.ways = 2};
   sources.up[1] = Eigen::MatrixXd::Zero(chain.count(1), 2), sources.down[5] = sources.up[1];
-  sources.up[1].col(0) = chain.chance(1, true, true), sources.down[5].col(1) = chain.chance(5, false, true);
+  sources.up[1].col(0) = chain.probability(1, true, true), sources.down[5].col(1) = chain.probability(5, false, true);
   const Prospects inside = ModeSolver(chain, 0, sources).solve(tissue, 2 * nodes);
   const Crossing surface = fresnel(std::cos(theta_deg * std::numbers::pi / 180), 1 / tissue.n_cuticle());
   const Directions& to = chain.directions(1);
@@ -78,9 +78,9 @@ TEST(LobeMean, IsTheMeanOverAzimuth) {
   mu << 1, 0.97, 0.8, 0.72, 0.7, 0.5, 0.2, 0.05, 1e-3;
   for (const double exponent : {0.5, 0.7, 1.0, 1.9, 5.0, 12.34, 20.0, 30.0}) {
     const AzimuthModes lobe(exponent);
-    const Eigen::MatrixXd means = LobeMean(exponent).among(mu);
+    const Eigen::MatrixXd means = LobeMean(exponent).matrix(mu);
     for (Eigen::Index i = 0; i < mu.size(); ++i) {
-      const Eigen::RowVectorXd row = LobeMean(exponent).toward(mu[i], mu);
+      const Eigen::RowVectorXd row = LobeMean(exponent).row(mu[i], mu);
       for (Eigen::Index j = 0; j < mu.size(); ++j) {
         EXPECT_NEAR(means(i, j), lobe.mean(mu[i], mu[j]), 1e-5) << exponent << ' ' << mu[i] << ' ' << mu[j];
         EXPECT_NEAR(row[j], means(i, j), 1e-12);

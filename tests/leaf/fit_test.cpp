@@ -62,7 +62,7 @@ void expect_found(const TissueParams& truth, const FitRequest& request, double t
     if (!n.is_identified()) continue;
     ++identified;
     // Parameters that the data hardly separate are found within their errors.
-    EXPECT_LT(std::abs(std::log(n.value / n.variable->of(truth))), std::max(tolerance, n.relative_error))
+    EXPECT_LT(std::abs(std::log(n.value / n.variable->value(truth))), std::max(tolerance, n.relative_error))
         << n.variable->name;
   }
   EXPECT_GE(identified, 4);

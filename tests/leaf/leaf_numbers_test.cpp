@@ -17,7 +17,7 @@ TEST(LeafNumbers, EachOneChangesTheKeyOfACache) {
   std::set<std::string> keys{describe(leaf)};
   for (const LeafNumber& n : leaf_parameters()) {
     TissueParams other = leaf;
-    n.of(other) += 0.01;
+    n.value(other) += 0.01;
     EXPECT_TRUE(keys.insert(describe(other)).second) << n.name;
     EXPECT_FALSE(other == leaf) << n.name;
   }

@@ -15,10 +15,10 @@ constexpr double kExponents[] = {0, 0.2, 0.5, 1, 2, 3, 5, 7.5, 10, 13, 30, 100, 
 
 TEST(Lobe, KeepsAllAtTheNormalAndHalfAtGrazing) {
   for (const double e : kExponents) {
-    EXPECT_NEAR(TabulatedLobe(e).kept(1), 1, 1e-12) << e;
-    EXPECT_NEAR(TabulatedLobe(e).kept(0), 0.5, 1e-12) << e;
-    EXPECT_NEAR(Lobe(e).kept(1), 1, 1e-12) << e;
-    EXPECT_NEAR(Lobe(e).kept(0), 0.5, 1e-12) << e;
+    EXPECT_NEAR(TabulatedLobe(e).kept_share(1), 1, 1e-12) << e;
+    EXPECT_NEAR(TabulatedLobe(e).kept_share(0), 0.5, 1e-12) << e;
+    EXPECT_NEAR(Lobe(e).kept_share(1), 1, 1e-12) << e;
+    EXPECT_NEAR(Lobe(e).kept_share(0), 0.5, 1e-12) << e;
   }
 }
 
@@ -26,9 +26,9 @@ TEST(Lobe, KeepsTheClosedFormsShare) {
   const TabulatedLobe even(0), cosine(1), cubic(3);
   for (double theta = 0; theta <= 1.57; theta += 0.01) {
     const double c = std::cos(theta);
-    EXPECT_NEAR(even.kept(c), 1 - theta / std::numbers::pi, 1e-6);
-    EXPECT_NEAR(cosine.kept(c), (1 + c) / 2, 1e-12);
-    EXPECT_NEAR(cubic.kept(c), 0.5 + c * (3 - c * c) / 4, 1e-8);
+    EXPECT_NEAR(even.kept_share(c), 1 - theta / std::numbers::pi, 1e-6);
+    EXPECT_NEAR(cosine.kept_share(c), (1 + c) / 2, 1e-12);
+    EXPECT_NEAR(cubic.kept_share(c), 0.5 + c * (3 - c * c) / 4, 1e-8);
   }
 }
 
@@ -48,12 +48,13 @@ double kept_by_quadrature(double exponent, double theta) {
 TEST(Lobe, KeepsWhatQuadratureFindsForAnyExponent) {
   for (const double e : kExponents)
     for (const double theta : {0.05, 0.4, 0.9, 1.3, 1.5, 1.55, 1.57})
-      EXPECT_NEAR(Lobe(e).kept(std::cos(theta)), kept_by_quadrature(e, theta), 1e-4) << e << " " << theta;
+      EXPECT_NEAR(Lobe(e).kept_share(std::cos(theta)), kept_by_quadrature(e, theta), 1e-4) << e << " " << theta;
 }
 
 TEST(Lobe, TableIsWhatItTabulates) {
   for (const double e : kExponents)
-    for (double c = 0; c <= 1; c += 1e-3) EXPECT_NEAR(TabulatedLobe(e).kept(c), Lobe(e).kept(c), 1e-5) << e << " " << c;
+    for (double c = 0; c <= 1; c += 1e-3)
+      EXPECT_NEAR(TabulatedLobe(e).kept_share(c), Lobe(e).kept_share(c), 1e-5) << e << " " << c;
 }
 
 TEST(Lobe, DensityIntegratesToOneBeforeTheCut) {

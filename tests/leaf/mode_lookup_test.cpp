@@ -53,7 +53,7 @@ double largest_error(const ModeLookup& table, const Tissue& tissue, const ModeLo
           const auto node = [&](size_t k) { return table.nodes(static_cast<float>(sines[k])); };
           const float looked_up = table.series(below, crosses, node(i), node(o), static_cast<float>(std::cos(phi)),
                                                selection.columns)[lane];
-          const double scale = kPi * passage(tissue, cosine(sines[i]), cosine(sines[o]));
+          const double scale = kPi * interface_transmittance(tissue, cosine(sines[i]), cosine(sines[o]));
           largest = std::max(largest, scale * std::abs(sum - static_cast<double>(looked_up)));
         }
   return largest;

@@ -57,7 +57,7 @@ double f_of(const LeafModes& modes, const Tissue& tissue, const Vec3d& wo, const
   double m = 0;
   for (const LeafModes::Grid& h : modes.series(wo.z < 0, wo.z * wi.z < 0))
     sum += h[i * count + o] * std::cos(m++ * phi);
-  return passage(tissue, std::abs(wo.z), std::abs(wi.z)) * sum;
+  return interface_transmittance(tissue, std::abs(wo.z), std::abs(wi.z)) * sum;
 }
 
 /// At incidence 0 to 89 degrees: mode 0 integrated over all ways out, which are Gaussian in the square root of their
@@ -76,7 +76,7 @@ void expect_energy_of_solver(const Tissue& tissue, double tolerance) {
         for (size_t k = 0; k < rule.size(); ++k) {
           const double mu = rule[k].x * rule[k].x;
           share[crosses] += rule[k].weight * 2 * rule[k].x * 2 * kPi * mu *
-                            passage(tissue, std::cos(radians(theta[i])), mu) *
+                            interface_transmittance(tissue, std::cos(radians(theta[i])), mu) *
                             modes.series(below, crosses)[0][i * sines.size() + theta.size() + k];
         }
       const Shares expected = solve(tissue, std::array{below ? 180 - theta[i] : theta[i]})[0];

@@ -76,7 +76,7 @@ std::string value_text(const leaf::LeafNumber& p, double value) {
 
 void add_value(Theme& theme, Number n, double value, Bounds bounds = {}) {
   TissueParams params = find_specimen("soybean")->params;
-  n->of(params) = value;
+  n->value(params) = value;
   add_leaf(theme, value_text(*n, value), params, telling_nm(n->name), bounds);
 }
 

@@ -47,7 +47,7 @@ class TrueF {
     const leaf::Lobe& lobe = tissue_.surface_lobe();
     const double cos_alpha = double(wo.z * wi.z - wo.x * wi.x - wo.y * wi.y);
     const double reflectance = leaf::fresnel(cos_i, 1 / tissue_.n_cuticle()).reflectance;
-    return reflectance * lobe.density(cos_alpha) / lobe.kept(cos_i) / cos_o;
+    return reflectance * lobe.density(cos_alpha) / lobe.kept_share(cos_i) / cos_o;
   }
 
   const leaf::Tissue& tissue_;

@@ -104,7 +104,7 @@ Parameters words_for(const TissueParams& leaf) {
       flag("sieve", leaf.sieve_and_detour),
       words("absorption", {leaf.absorption_tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski"})};
   for (const leaf::LeafNumber& n : leaf::leaf_parameters())
-    all.push_back(number("float", std::string(n.name), {n.of(leaf)}));
+    all.push_back(number("float", std::string(n.name), {n.value(leaf)}));
   return all;
 }
 

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Correlation of neighbouring residuals along the spectrum.
-double neighbours(const std::vector<double>& residuals) {
+double neighbour_correlation(const std::vector<double>& residuals) {
   double product = 0, square = 0;
   for (size_t i = 0; i + 1 < residuals.size(); ++i) product += residuals[i] * residuals[i + 1];
   for (const double x : residuals) square += x * x;
@@ -29,7 +29,7 @@ double root_mean_square(const std::vector<double>& values) {
 }
 
 /// Sets errors, correlations, parameters and contents of a result that has its `params` and `fitted`.
-void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& found, FitResult& result) {
+void compute_statistics(const FitRequest& request, const FitRows& rows, const FoundLeaf& found, FitResult& result) {
   const LeafSpace& space = *found.space;
   const FitProblem problem(request, space, rows);
   std::vector<double> r, t;
@@ -43,7 +43,8 @@ void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& foun
   }
   if (!r.empty()) result.rmse_r = root_mean_square(r);
   if (!t.empty()) result.rmse_t = root_mean_square(t);
-  const double rho = (static_cast<double>(r.size()) * neighbours(r) + static_cast<double>(t.size()) * neighbours(t)) /
+  const double rho = (static_cast<double>(r.size()) * neighbour_correlation(r) +
+                      static_cast<double>(t.size()) * neighbour_correlation(t)) /
                      static_cast<double>(r.size() + t.size());
   r.insert(r.end(), t.begin(), t.end());
   result.rmse = root_mean_square(r);
@@ -67,7 +68,7 @@ void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& foun
       result.correlations[static_cast<size_t>(a)][static_cast<size_t>(b)] =
           covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
   for (const LeafNumber* v : space.numbers()) {
-    FittedNumber number{v, v->of(result.params)};
+    FittedNumber number{v, v->value(result.params)};
     const auto place = std::ranges::find(space.free(), v);
     number.is_fixed = place == space.free().end();
     if (!number.is_fixed) {
@@ -86,7 +87,7 @@ void judge(const FitRequest& request, const FitRows& rows, const FoundLeaf& foun
     VectorXd slope(n);
     for (Index i = 0; i < n; ++i) {
       const LeafNumber& v = space.variable(i);
-      const TissueParams moved = space.with(result.params, v, v.of(result.params) * std::exp(kStep));
+      const TissueParams moved = space.with(result.params, v, v.value(result.params) * std::exp(kStep));
       slope[i] = std::log(area_content(moved, content) / value) / kStep;
     }
     result.contents.push_back(
@@ -115,7 +116,7 @@ FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool, FitCache* 
   FitResult result;
   result.params = found.space->at(found.logs), result.specimen = &found.space->specimen();
   for (const auto& [r, t] : found.solved) result.fitted.push_back({r, t, false});
-  judge(request, rows, found, result);
+  compute_statistics(request, rows, found, result);
   result.misfits = misfit_bands(request, result);
   return result;
 }

@@ -126,7 +126,7 @@ void FitProblem::for_each_row(const SurfaceExpansion& expansion, const VectorXd&
   for (Index i = 0; i < count; ++i) {
     const LeafNumber& variable = space_.variable(i);
     if (variable.is_structure()) continue;
-    const TissueParams moved = space_.with(p, variable, variable.of(p) * std::exp(kSmall));
+    const TissueParams moved = space_.with(p, variable, variable.value(p) * std::exp(kSmall));
     changes.col(i) = (amounts_of(moved) - amounts) / kSmall;
   }
   VectorXd by_r(count), by_t(count), by_depth(count);

@@ -111,7 +111,7 @@ class FitProblem {
   void for_each_row(const SurfaceExpansion& expansion, const Eigen::VectorXd& logs, const Visit& visit) const;
   Normal normal(const SurfaceExpansion& expansion, const Eigen::VectorXd& logs) const;
   double prior(Eigen::Index i, const Eigen::VectorXd& logs) const {
-    return expectation() * (logs[i] - std::log(space_.variable(i).of(space_.origin())));
+    return expectation() * (logs[i] - std::log(space_.variable(i).value(space_.origin())));
   }
 
   const FitRequest& request_;

@@ -46,11 +46,11 @@ struct Candidate {
   SurfaceExpansion expansion;
 };
 
-TissueParams started(const LeafSpace& space, const Start& start) {
+TissueParams start_params(const LeafSpace& space, const Start& start) {
   TissueParams p = space.origin();
   for (const LeafNumber* v : space.free())
     for (size_t i = 0; i < start.size(); ++i)
-      if (v->member == kStarted[i]) v->of(p) = start[i];
+      if (v->member == kStarted[i]) v->value(p) = start[i];
   return p;
 }
 
@@ -66,7 +66,7 @@ class Surfaces {
   std::shared_ptr<const OpticsSurface> shared(const TissueParams& p) {
     std::vector<double> key{static_cast<double>(p.structure), p.sieve_and_detour ? 1.0 : 0.0};
     for (const LeafNumber& n : kLeafNumbers)
-      if (n.is_structure()) key.push_back(n.of(p));
+      if (n.is_structure()) key.push_back(n.value(p));
     key.insert(key.end(), theta_deg_.begin(), theta_deg_.end());
     {
       const std::lock_guard lock(cache_.mutex);
@@ -127,7 +127,7 @@ std::vector<Candidate> first_candidates(const FitRequest& request, const FitRows
       c.rows = std::make_unique<FitRows>(all.thinned(kSearchRows));
       c.problem = std::make_unique<FitProblem>(request, *c.space, *c.rows);
       for (const Start& start : kStarts) {
-        VectorXd logs = c.space->logs_of(started(*c.space, start));
+        VectorXd logs = c.space->logs_of(start_params(*c.space, start));
         SurfaceExpansion expansion{logs, *surfaces.shared(c.space->at(logs)), {}, {}};
         const double cost =
             c.problem->minimise(expansion, {.structure_is_free = false, .most_steps = 30, .done = 1e-3}, logs);
@@ -142,8 +142,8 @@ std::vector<Candidate> first_candidates(const FitRequest& request, const FitRows
 }
 
 /// Broyden's update: corrects the slopes by what a step has shown.
-void learn(const FitProblem& problem, const VectorXd& step, const OpticsSurface& found, const OpticsSurface& expected,
-           SurfaceExpansion& expansion) {
+void broyden_update(const FitProblem& problem, const VectorXd& step, const OpticsSurface& found,
+                    const OpticsSurface& expected, SurfaceExpansion& expansion) {
   double square = 0;
   for (const Index i : problem.structural()) square += step[i] * step[i];
   if (square == 0) return;
@@ -174,7 +174,7 @@ void refine(Candidate& c, Surfaces& surfaces, int rounds, double done) {
     SurfaceExpansion there{logs, surfaces.search(c.space->at(logs)), {}, {}};
     // The chemistry of the new structure's own surface.
     const double cost = c.problem->minimise(there, {.structure_is_free = false, .most_steps = 6, .done = 1e-3}, logs);
-    learn(*c.problem, step, there.base, expected, c.expansion);
+    broyden_update(*c.problem, step, there.base, expected, c.expansion);
     const double moved = largest_step(*c.problem, step), gain = (c.cost - cost) / c.cost;
     if (cost < c.cost) {
       if (moved > 0.9 * radius) radius = std::min(kLargest, 2 * radius);
@@ -206,7 +206,7 @@ void polish(Candidate& c, const FitProblem& problem, Surfaces& surfaces) {
     problem.minimise(c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-5}, logs);
     SurfaceExpansion there{logs, surfaces.fine(c.space->at(logs)), {}, {}};
     const double cost = problem.minimise(there, {.structure_is_free = false, .most_steps = 6, .done = 1e-5}, logs);
-    learn(problem, logs - c.logs, there.base, problem.surface(c.expansion, logs), c.expansion);
+    broyden_update(problem, logs - c.logs, there.base, problem.surface(c.expansion, logs), c.expansion);
     const double gain = (c.cost - cost) / c.cost;
     if (gain > 0) {
       c.cost = cost, c.logs = logs;
@@ -251,7 +251,7 @@ std::vector<Pair> solve_rows(const FitRows& rows, const TissueParams& params, co
   const Constituents amounts = amounts_of(params);
   LobeMeans made;
   for (const double exponent : {params.epidermis_aspect, params.spongy_aspect, params.palisade_aspect})
-    made.of(exponent);
+    made.get(exponent);
   const std::vector<size_t> chosen = rows.spread(kMostSolvedRows);
   std::vector<Pair> solved(chosen.size());
   constexpr size_t kChunk = 16;

@@ -35,7 +35,7 @@ inline Constituents specific_depths(AbsorptionTables tables, double lambda_nm) {
   for (const Absorber& a : absorbers()) {
     if (!a.first().is_parameter()) continue;
     TissueParams one = of;
-    a.first().of(one) = 1;
+    a.first().value(one) = 1;
     depths[i++] = absorption_coefficient(one, lambda_nm) - depths[0];
   }
   return depths;
@@ -66,13 +66,13 @@ class LeafSpace {
       if (is_fixed || is_of_leaf) numbers_.push_back(&n);
       if (is_fixed || !is_of_leaf) continue;
       free_.push_back(&n);
-      if (n.of(origin_) == 0) n.of(origin_) = n.little;  // none has no logarithm
+      if (n.value(origin_) == 0) n.value(origin_) = n.little;  // none has no logarithm
     }
     for (const LeafNumber& n : leaf_parameters()) {
       if (n.follows.empty() || std::ranges::find(given_, &n) != given_.end() || fix(request, n)) continue;
       const LeafNumber* leader = find_leaf_number(n.follows);
-      const double of_leader = leader->of(specimen_.params);
-      followers_.push_back({&n, leader, of_leader > 0 ? n.of(specimen_.params) / of_leader : 0});
+      const double of_leader = leader->value(specimen_.params);
+      followers_.push_back({&n, leader, of_leader > 0 ? n.value(specimen_.params) / of_leader : 0});
     }
     settle(origin_);
   }
@@ -85,7 +85,7 @@ class LeafSpace {
   Eigen::Index count() const { return static_cast<Eigen::Index>(free_.size()); }
 
   TissueParams with(TissueParams p, const LeafNumber& v, double value) const {
-    v.of(p) = value;
+    v.value(p) = value;
     settle(p);
     return p;
   }
@@ -93,14 +93,14 @@ class LeafSpace {
   /// Logarithms of the free parameters, within their ranges.
   Eigen::VectorXd logs_of(const TissueParams& p) const {
     Eigen::VectorXd logs(count());
-    for (Eigen::Index i = 0; i < count(); ++i) logs[i] = std::clamp(std::log(variable(i).of(p)), low(i), high(i));
+    for (Eigen::Index i = 0; i < count(); ++i) logs[i] = std::clamp(std::log(variable(i).value(p)), low(i), high(i));
     return logs;
   }
   TissueParams at(const Eigen::VectorXd& logs) const {
     TissueParams p = origin_;
     for (Eigen::Index i = 0; i < count(); ++i) {
       const Interval& range = variable(i).fit_range;  // the exponential of its ends may lie beyond them
-      variable(i).of(p) = std::clamp(std::exp(logs[i]), range.min, range.max);
+      variable(i).value(p) = std::clamp(std::exp(logs[i]), range.min, range.max);
     }
     settle(p);
     return p;
@@ -123,17 +123,17 @@ class LeafSpace {
     for (const LeafNumber& n : leaf_parameters()) {
       if (!n.only_with) continue;
       if (*n.only_with != origin_.absorption_tables) {
-        n.of(origin_) = 0;
-      } else if (n.of(origin_) == 0 && n.name == n.content.name) {
-        for (const LeafNumber* part : parts_of(n.content)) n.of(origin_) += part->of(p);
+        n.value(origin_) = 0;
+      } else if (n.value(origin_) == 0 && n.name == n.content.name) {
+        for (const LeafNumber* part : parts_of(n.content)) n.value(origin_) += part->value(p);
       }
     }
   }
 
   /// Sets what follows other parameters.
   void settle(TissueParams& p) const {
-    for (const auto& [number, content] : per_area_) number->of(p) = content / area_content(p, 1);
-    for (const Follower& f : followers_) f.number->of(p) = f.ratio * f.leader->of(p);
+    for (const auto& [number, content] : per_area_) number->value(p) = content / area_content(p, 1);
+    for (const Follower& f : followers_) f.number->value(p) = f.ratio * f.leader->value(p);
   }
 
   /// Returns whether the request gives the parameter, and sets it.
@@ -143,7 +143,7 @@ class LeafSpace {
     if (found->per_area)
       per_area_.push_back({&number, found->value});
     else
-      number.of(origin_) = found->value;
+      number.value(origin_) = found->value;
     return true;
   }
   /// Sets what a content gives that is no parameter's: its parts, in the specimen's ratio; without any, the thickness.
@@ -158,9 +158,9 @@ class LeafSpace {
       return;
     }
     double sum = 0, rest = 1;
-    for (const LeafNumber* part : parts) sum += part->of(specimen_.params);
+    for (const LeafNumber* part : parts) sum += part->value(specimen_.params);
     for (const LeafNumber* part : parts) {
-      const double share = part == parts.back() ? rest : part->of(specimen_.params) / sum;
+      const double share = part == parts.back() ? rest : part->value(specimen_.params) / sum;
       per_area_.push_back({part, share * fixed.value});
       rest -= share;
     }

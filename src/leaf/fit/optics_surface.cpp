@@ -21,7 +21,7 @@ constexpr size_t kWavelengths = OpticsSurface::kWavelengths, kTerms = OpticsSurf
 constexpr double kOffset = 0.1, kDeepest = 40;
 
 /// Position of a depth in [-1, 1].
-double place(double depth) {
+double to_unit_coordinate(double depth) {
   static const double first = std::log(kOffset), width = std::log(kDeepest + kOffset) - first;
   return 2 * (std::log(depth + kOffset) - first) / width - 1;
 }
@@ -77,7 +77,7 @@ OpticsSurface::Weights OpticsSurface::weights(double lambda_nm) {
 }
 
 OpticsSurface::Terms OpticsSurface::terms(double depth) {
-  const double x = std::min(place(std::min(depth, kDeepest)), 1.0);
+  const double x = std::min(to_unit_coordinate(std::min(depth, kDeepest)), 1.0);
   static const double scale = 2 / (std::log(kDeepest + kOffset) - std::log(kOffset));
   const double by_depth = depth < kDeepest ? scale / (depth + kOffset) : 0;
   Terms result;

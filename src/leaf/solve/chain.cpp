@@ -123,13 +123,13 @@ void Chain::make_kernel(const Lobe& lobe, size_t medium, size_t modes) {
   const Directions& d = directions_[medium];
   Kernel& kernel = place->second;
   kernel.shares =
-      means_ ? std::vector{means_->of(lobe.exponent()).among(d.mu)} : lobe_modes(lobe.exponent(), d.mu, d.mu, modes);
+      means_ ? std::vector{means_->get(lobe.exponent()).matrix(d.mu)} : lobe_modes(lobe.exponent(), d.mu, d.mu, modes);
   kernel.kept = kernel.shares[0] * d.weight;
   for (MatrixXd& shares : kernel.shares)
     shares = kernel.kept.cwiseInverse().asDiagonal() * shares * d.weight.asDiagonal();
 }
 
-VectorXd Chain::chance(size_t medium, bool up, bool refracts) const {
+VectorXd Chain::probability(size_t medium, bool up, bool refracts) const {
   const double eta = tissue_.n[medium] / tissue_.n[next(medium, up)];
   return directions_[medium].mu.unaryExpr([eta, refracts](double mu) {
     const double reflectance = fresnel(mu, eta).reflectance;
@@ -146,7 +146,7 @@ MatrixXd Chain::branch(size_t mode, size_t medium, bool up, bool refracts) const
     matrix.topRows(common) = kernel(*l, to).shares[mode].topRows(common);
   else
     matrix.topLeftCorner(common, common).setIdentity();
-  VectorXd taken = chance(medium, up, refracts);
+  VectorXd taken = probability(medium, up, refracts);
   // A ray in such a state would never end. No ray reaches it, but the linear system requires a row for it that is not
   // singular.
   if (!refracts) taken.tail(totally_reflected(medium)).setZero();
@@ -161,7 +161,7 @@ Index Chain::totally_reflected(size_t medium) const {
 MatrixXd Chain::branch_density(const MatrixXd& toward, size_t medium, bool up, bool refracts) const {
   const size_t to = refracts ? next(medium, up) : medium;
   const Index common = std::min(count(medium), count(to));
-  const VectorXd scale = chance(medium, up, refracts)
+  const VectorXd scale = probability(medium, up, refracts)
                              .head(common)
                              .cwiseQuotient(kernel(*lobe(medium, up, refracts), to).kept.head(common));
   MatrixXd matrix = MatrixXd::Zero(count(medium), toward.cols());

@@ -60,7 +60,7 @@ class Chain {
   Eigen::MatrixXd branch_density(const Eigen::MatrixXd& toward, size_t medium, bool up, bool refracts) const;
 
   /// Probability, by node, that a ray takes the branch at the next interface (Fresnel).
-  Eigen::VectorXd chance(size_t medium, bool up, bool refracts) const;
+  Eigen::VectorXd probability(size_t medium, bool up, bool refracts) const;
 
  private:
   /// A lobe around each node of one medium.

@@ -24,7 +24,7 @@ constexpr size_t kAdaxial = Chain::kFirst, kUpper = 2, kAir = 3, kLower = 4, kAb
 RowVectorXd spread(const Chain& chain, const Lobe& lobe, double mu_axis) {
   const Directions& to = chain.directions(kAdaxial);
   const VectorXd axis = VectorXd::Constant(1, mu_axis);
-  const RowVectorXd lobe_means = chain.means() ? chain.means()->of(lobe.exponent()).toward(mu_axis, to.mu)
+  const RowVectorXd lobe_means = chain.means() ? chain.means()->get(lobe.exponent()).row(mu_axis, to.mu)
                                                : RowVectorXd(lobe_modes(lobe.exponent(), axis, to.mu, 1)[0].row(0));
   const RowVectorXd row = lobe_means.cwiseProduct(to.weight.transpose());
   return row / row.sum();
@@ -47,7 +47,7 @@ Epidermis eliminate(const Chain& chain, size_t medium, size_t inner) {
   const bool up = medium < inner;  // the direction outward
   const MatrixXd outer = chain.branch(0, medium, up, false), inside = chain.branch(0, medium, !up, false);
   const MatrixXd entering = chain.branch(0, medium, !up, true), leaving = chain.branch(0, inner, up, true);
-  const VectorXd leaves = chain.chance(medium, up, true);
+  const VectorXd leaves = chain.probability(medium, up, true);
   MatrixXd sources(chain.count(medium), chain.count(inner) + 1);
   sources << entering, inside * leaves;
   Epidermis result;
@@ -104,7 +104,7 @@ void DepthSolver::add(const Tissue& tissue, double above, double weight, std::ve
   double upper_depth = tissue.optical_depth[kUpper], lower_depth = tissue.optical_depth[kLower];
   if (tissue.air_space_moves) upper_depth *= above, lower_depth *= 1 - above;
   const Index upper = mu_above_.size(), lower = mu_below_.size();
-  VectorXd kept(upper + lower);
+  VectorXd kept_share(upper + lower);
   for (Index i = 0; i < upper; ++i) kept[i] = survival(upper_depth, mu_above_[i], tissue.sieve_and_detour);
   for (Index i = 0; i < lower; ++i) kept[upper + i] = survival(lower_depth, mu_below_[i], tissue.sieve_and_detour);
   // A ray that enters a part crosses it, meets the air space, and crosses a part toward an epidermis.

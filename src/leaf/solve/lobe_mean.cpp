@@ -45,7 +45,7 @@ ArrayXd LobeMean::sum(const Series& series, const ArrayXd& x) {
   return 0.5 * twice * next - after + series[0];
 }
 
-MatrixXd LobeMean::among(const VectorXd& mu) const {
+MatrixXd LobeMean::matrix(const VectorXd& mu) const {
   const Index count = mu.size(), pairs = count * (count + 1) / 2;
   const ArrayXd sine = (1 - mu.array().square()).max(0).sqrt();
   // The pairs whose lobe the wall does not cut come first.
@@ -71,7 +71,7 @@ MatrixXd LobeMean::among(const VectorXd& mu) const {
   return result;
 }
 
-Eigen::RowVectorXd LobeMean::toward(double mu_axis, const VectorXd& mu) const {
+Eigen::RowVectorXd LobeMean::row(double mu_axis, const VectorXd& mu) const {
   const double sine = std::sqrt(std::max(0.0, 1 - mu_axis * mu_axis));
   const ArrayXd a = mu_axis * mu.array(), b = sine * (1 - mu.array().square()).max(0).sqrt();
   const ArrayXd peak = a + b, x = ((a - b).abs() / peak).sqrt();

@@ -17,9 +17,9 @@ class LobeMean {
   explicit LobeMean(double exponent);
 
   /// Matrix of the means: axes by directions, both with the cosines `mu` in (0, 1].
-  Eigen::MatrixXd among(const Eigen::VectorXd& mu) const;
+  Eigen::MatrixXd matrix(const Eigen::VectorXd& mu) const;
   /// The means from one axis toward directions.
-  Eigen::RowVectorXd toward(double mu_axis, const Eigen::VectorXd& mu) const;
+  Eigen::RowVectorXd row(double mu_axis, const Eigen::VectorXd& mu) const;
 
  private:
   static constexpr size_t kTerms = 24;
@@ -33,7 +33,7 @@ class LobeMean {
 /// Series by exponent, each made when it is first needed. Not for several threads at once.
 class LobeMeans {
  public:
-  const LobeMean& of(double exponent) { return known_.try_emplace(exponent, exponent).first->second; }
+  const LobeMean& get(double exponent) { return known_.try_emplace(exponent, exponent).first->second; }
 
  private:
   std::map<double, LobeMean> known_;

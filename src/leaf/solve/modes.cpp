@@ -77,7 +77,7 @@ VectorXd signs(std::span<const double> sines, size_t mode) {
   return result;
 }
 
-LeafModes::Grid row_by_row(const MatrixXd& matrix) {
+LeafModes::Grid to_row_major(const MatrixXd& matrix) {
   LeafModes::Grid grid;
   for (Index i = 0; i < matrix.rows(); ++i)
     for (Index j = 0; j < matrix.cols(); ++j) grid.push_back(matrix(i, j));
@@ -89,7 +89,7 @@ size_t most_modes(double exponent) { return static_cast<size_t>(16 + 3 * std::sq
 
 }  // namespace
 
-double passage(const Tissue& tissue, double cos_i, double cos_o) {
+double interface_transmittance(const Tissue& tissue, double cos_i, double cos_o) {
   const double eta = 1 / tissue.n_cuticle();
   const Crossing in = fresnel(cos_i, eta), out = fresnel(cos_o, eta);
   return (1 - in.reflectance) * (1 - out.reflectance) / out.cos_t;
@@ -132,7 +132,7 @@ LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, doubl
       open[crosses] = open[crosses] && (m == 0 || largest[crosses] * std::numbers::pi > tolerance / 2);
       if (open[crosses])
         for (const bool from_below : {false, true})
-          result.series(from_below, crosses).push_back(row_by_row(values[from_below][crosses]));
+          result.series(from_below, crosses).push_back(to_row_major(values[from_below][crosses]));
     }
   }
   return result;

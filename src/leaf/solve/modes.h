@@ -49,6 +49,6 @@ LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, doubl
 int mode_nodes(const Tissue& tissue);
 
 /// Returns (1 - F_i) (1 - F_o) / mu_o' for directions outside with these cosines to the normal.
-double passage(const Tissue& tissue, double cos_i, double cos_o);
+double interface_transmittance(const Tissue& tissue, double cos_i, double cos_o);
 
 }  // namespace frond::leaf

@@ -5,7 +5,7 @@
 namespace frond::leaf {
 namespace {
 
-double between(const std::vector<double>& curve, const WavelengthGrid::Cell& cell) {
+double interpolate(const std::vector<double>& curve, const WavelengthGrid::Cell& cell) {
   return (1 - cell.t) * curve[cell.below] + cell.t * curve[cell.below + 1];
 }
 
@@ -43,11 +43,11 @@ std::array<double, kLanes> DepthMap::at(const TexturePoint& point, const Sampled
   const auto lanes = static_cast<size_t>(lambda.count);
   for (size_t i = 0; i < lanes; ++i) {
     cells[i] = kAbsorptionGrid.cell(double(lambda.nm[i]));
-    depth[i] = between(base_, cells[i]);
+    depth[i] = interpolate(base_, cells[i]);
   }
   for (const Curve& curve : curves_) {
     const auto concentration = double(curve.concentration->evaluate(point));
-    for (size_t i = 0; i < lanes; ++i) depth[i] += concentration * between(curve.absorption, cells[i]);
+    for (size_t i = 0; i < lanes; ++i) depth[i] += concentration * interpolate(curve.absorption, cells[i]);
   }
   const double way = thickness_.at(point) * fraction_.at(point);
   for (double& d : depth) d *= way;
@@ -56,11 +56,11 @@ std::array<double, kLanes> DepthMap::at(const TexturePoint& point, const Sampled
 
 Interval DepthMap::range(double lambda_nm) const {
   const WavelengthGrid::Cell cell = kAbsorptionGrid.cell(lambda_nm);
-  double least = between(base_, cell), most = least;
+  double least = interpolate(base_, cell), most = least;
   for (const Curve& curve : curves_) {
     const Interval concentration = curve.concentration->range();
-    least += concentration.min * between(curve.absorption, cell);
-    most += concentration.max * between(curve.absorption, cell);
+    least += concentration.min * interpolate(curve.absorption, cell);
+    most += concentration.max * interpolate(curve.absorption, cell);
   }
   const Interval thickness = thickness_.range(), fraction = fraction_.range();
   return {least * thickness.min * fraction.min, most * thickness.max * fraction.max};

@@ -16,7 +16,7 @@ namespace {
 void add_surface(LeafFile& leaf) {
   if (!leaf.is_reciprocal) {
     const TabulatedLobe lobe(leaf.exponent);
-    for (const double c : CosineNodes::cosines()) leaf.surface.push_back(static_cast<float>(lobe.kept(c)));
+    for (const double c : CosineNodes::cosines()) leaf.surface.push_back(static_cast<float>(lobe.kept_share(c)));
     return;
   }
   const auto [least, most] = std::ranges::minmax_element(leaf.index);

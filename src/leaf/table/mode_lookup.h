@@ -46,7 +46,7 @@ class ModeLookup {
     Nodes nodes;
   };
   /// The same for a reciprocal table: bitwise equal if the directions are exchanged.
-  Float4 mutual(const Way& a, const Way& b, float cos_phi, const TableSelection& columns) const {
+  Float4 reciprocal_value(const Way& a, const Way& b, float cos_phi, const TableSelection& columns) const {
     const bool crosses = a.below != b.below, in_order = crosses ? b.below : a.sine >= b.sine;
     const Way &first = in_order ? a : b, &second = in_order ? b : a;
     return series(first.below, crosses, first.nodes, second.nodes, cos_phi, columns);

@@ -29,7 +29,7 @@ double interpolation_error(const std::vector<LeafModes::Grid>& series, const std
       for (const LeafModes::Grid& h : series)
         sum += std::abs(fourth_difference([&](size_t k) { return h[k * count + o]; }, i)) +
                std::abs(fourth_difference([&](size_t k) { return h[i * count + k]; }, o));
-      largest = std::max(largest, sum * passage(tissue, cosine(sines[i]), cosine(sines[o])));
+      largest = std::max(largest, sum * interface_transmittance(tissue, cosine(sines[i]), cosine(sines[o])));
     }
   return largest * kMiddle * std::numbers::pi;
 }

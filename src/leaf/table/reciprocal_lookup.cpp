@@ -139,11 +139,11 @@ ReciprocalLookup::Factors ReciprocalLookup::sum_columns(size_t node, float t, co
     const TableSelection::Lane& at = selection.lanes[static_cast<size_t>(lane)];
     for (size_t i = 0; i < static_cast<size_t>(selection.columns_per_lane); ++i) {
       const size_t c = at.column[i];
-      const float below = between(surface_, exponent.below * columns_ + c, node, t),
-                  above = between(surface_, exponent.above * columns_ + c, node, t);
+      const float below = interpolate(surface_, exponent.below * columns_ + c, node, t),
+                  above = interpolate(surface_, exponent.above * columns_ + c, node, t);
       f.surface[lane] += at.weight[i] * (below + exponent.t * (above - below));
-      f.subsurface[lane] += at.weight[i] * between(subsurface_, c, node, t);
-      f.back[lane] += at.weight[i] * between(back_, c, node, t);
+      f.subsurface[lane] += at.weight[i] * interpolate(subsurface_, c, node, t);
+      f.back[lane] += at.weight[i] * interpolate(back_, c, node, t);
     }
   }
   return f;

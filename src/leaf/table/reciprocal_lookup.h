@@ -29,10 +29,11 @@ class ReciprocalLookup {
     const auto [node, t] = TableLookup::position(cos_theta);
     if (selection.lane_count > 0) return sum_columns(node, t, exponent, selection);
     Factors f;
-    f.surface.v = between(surface_lanes_, exponent.below, node, t);
-    if (exponent.t > 0) f.surface.v += exponent.t * (between(surface_lanes_, exponent.above, node, t) - f.surface.v);
-    f.subsurface.v = between(subsurface_lanes_, 0, node, t);
-    f.back.v = between(back_lanes_, 0, node, t);
+    f.surface.v = interpolate(surface_lanes_, exponent.below, node, t);
+    if (exponent.t > 0)
+      f.surface.v += exponent.t * (interpolate(surface_lanes_, exponent.above, node, t) - f.surface.v);
+    f.subsurface.v = interpolate(subsurface_lanes_, 0, node, t);
+    f.back.v = interpolate(back_lanes_, 0, node, t);
     return f;
   }
 
@@ -40,7 +41,7 @@ class ReciprocalLookup {
   static constexpr size_t kNodes = TableLookup::kNodes;
 
   template <class T>
-  static T between(const std::vector<T>& values, size_t row, size_t node, float t) {
+  static T interpolate(const std::vector<T>& values, size_t row, size_t node, float t) {
     const T* at = &values[row * kNodes + node];
     return (1 - t) * at[0] + t * at[1];
   }

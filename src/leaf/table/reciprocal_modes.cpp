@@ -16,7 +16,7 @@ using Grid = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynam
 /// One of the four series: the side that is lit and the side that light leaves by, as in LeafModes.
 struct Route {
   bool from_below, crosses;
-  Route back() const { return {from_below != crosses, crosses}; }
+  Route reversed() const { return {from_below != crosses, crosses}; }
 };
 constexpr Route kAbove{false, false}, kBelow{true, false}, kThrough{false, true};
 
@@ -35,9 +35,9 @@ Grid grid(const LeafModes& modes, const Route& route, size_t mode) {
 }
 
 /// f / ((1 - F_i) (1 - F_o)) of one mode, the mean over exchanged directions; rows are incident directions.
-MatrixXd both_ways(const LeafModes& modes, const VectorXd& inner, const Route& route, size_t mode) {
+MatrixXd symmetrised_mode(const LeafModes& modes, const VectorXd& inner, const Route& route, size_t mode) {
   const auto over = inner.cwiseInverse().asDiagonal();
-  const MatrixXd there = grid(modes, route, mode) * over, back = grid(modes, route.back(), mode) * over;
+  const MatrixXd there = grid(modes, route, mode) * over, back = grid(modes, route.reversed(), mode) * over;
   return (there + back.transpose()) / 2;
 }
 
@@ -73,7 +73,7 @@ std::optional<VectorXd> scaling(const MatrixXd& k, const VectorXd& share) {
   return {};
 }
 
-LeafModes::Grid row_by_row(const MatrixXd& matrix) {
+LeafModes::Grid to_row_major(const MatrixXd& matrix) {
   LeafModes::Grid values(static_cast<size_t>(matrix.size()));
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(values.data(), matrix.rows(),
                                                                                      matrix.cols()) = matrix;
@@ -85,19 +85,20 @@ std::optional<LeafModes> make_reciprocal(const LeafModes& modes, double index, s
   const VectorXd weight = as_vector(exit_weights(index, cells, Measure::plain));
   const Index side = weight.size();
   MatrixXd k(2 * side, 2 * side);
-  const MatrixXd through = both_ways(modes, inner, kThrough, 0);
-  k << both_ways(modes, inner, kAbove, 0), through, through.transpose(), both_ways(modes, inner, kBelow, 0);
+  const MatrixXd through = symmetrised_mode(modes, inner, kThrough, 0);
+  k << symmetrised_mode(modes, inner, kAbove, 0), through, through.transpose(),
+      symmetrised_mode(modes, inner, kBelow, 0);
   const auto d = scaling(k * weight.replicate(2, 1).asDiagonal(), outgoing(modes, index, cells));
   if (!d) return {};
   LeafModes result(modes.sines());
   const auto scaled = [&](const Route& route, size_t mode) -> MatrixXd {
     const auto of = [&](bool below) { return d->segment(below ? side : 0, side); };
-    return of(route.from_below).asDiagonal() * both_ways(modes, inner, route, mode) *
-           of(route.back().from_below).asDiagonal();
+    return of(route.from_below).asDiagonal() * symmetrised_mode(modes, inner, route, mode) *
+           of(route.reversed().from_below).asDiagonal();
   };
   for (const Route& route : {kAbove, kBelow, kThrough, kThrough.back()})
     for (size_t m = 0; m < modes.series(route.from_below, route.crosses).size(); ++m)
-      result.series(route.from_below, route.crosses).push_back(row_by_row(scaled(route, m)));
+      result.series(route.from_below, route.crosses).push_back(to_row_major(scaled(route, m)));
   return result;
 }
 

@@ -62,12 +62,12 @@ class SeriesLookup {
   using Sums = std::array<Float4, kMostBlocks>;
 
   size_t side() const { return cells_ + 3; }
-  size_t places() const { return side() * side(); }
+  size_t cell_count() const { return side() * side(); }
   void set_weights(const ReducedBasis& basis);
   void set_needed(const ReducedBasis& basis, double tolerance);
   void set_values(const ReducedBasis& basis);
-  std::vector<double> size_of(const ReducedBasis& basis, size_t block, size_t mode) const;
-  double around(const std::vector<double>& size, size_t incident, size_t leaving) const;
+  std::vector<double> contribution_bounds(const ReducedBasis& basis, size_t block, size_t mode) const;
+  double neighbourhood_bound(const std::vector<double>& size, size_t incident, size_t leaving) const;
 
   /// cos m phi for all m, by Chebyshev's recurrence.
   struct Cosines {

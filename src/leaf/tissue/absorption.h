@@ -43,7 +43,7 @@ struct Absorber {
   /// Amount of all in a leaf, in the unit of the numbers.
   double amount(const TissueParams& p) const {
     double sum = 0;
-    for (const LeafNumber* n : numbers) sum += n->of(p);
+    for (const LeafNumber* n : numbers) sum += n->value(p);
     return sum;
   }
 };

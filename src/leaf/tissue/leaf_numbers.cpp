@@ -22,7 +22,7 @@ constexpr std::string_view kHead =
 constexpr std::string_view kProspectHead =
     "# PROSPECT-D's absorption {hash:016x}: {tables}, kg/m3: anthocyanins {anthocyanins}, dry matter {drymatter}\n";
 
-bool states(std::string_view head, const LeafNumber& n) {
+bool contains_placeholder(std::string_view head, const LeafNumber& n) {
   return head.find(fmt::format("{{{}}}", n.name)) != head.npos;
 }
 
@@ -31,7 +31,7 @@ bool states(std::string_view head, const LeafNumber& n) {
 double& TissueParams::number(std::string_view name) {
   const LeafNumber* number = find_leaf_number(name);
   assert(number);
-  return number->of(*this);
+  return number->value(*this);
 }
 
 const LeafNumber* find_leaf_number(std::string_view name) {
@@ -61,7 +61,7 @@ std::vector<const LeafNumber*> parts_of(const AreaContent& content) {
 double area_content(const TissueParams& p, const AreaContent& content) {
   double sum = 0;
   for (const LeafNumber& n : kLeafNumbers)
-    if (n.content.name == content.name) sum += n.of(p) * n.content.kg_per_m3;
+    if (n.content.name == content.name) sum += n.value(p) * n.content.kg_per_m3;
   return area_content(p, sum);
 }
 
@@ -72,15 +72,16 @@ std::string describe(const TissueParams& p) {
   values.push_back(fmt::arg("sieve", p.sieve_and_detour));
   values.push_back(fmt::arg("hash", prospect_hash()));
   values.push_back(fmt::arg("tables", prospect ? "all" : "these"));
-  for (const LeafNumber& n : leaf_parameters()) values.push_back(fmt::arg(n.name.data(), n.of(p)));
+  for (const LeafNumber& n : leaf_parameters()) values.push_back(fmt::arg(n.name.data(), n.value(p)));
   std::string text = fmt::vformat(kHead, values);
   if (prospect ||
-      std::ranges::any_of(kLeafNumbers, [&p](const LeafNumber& n) { return n.is_of_prospect() && n.of(p) != 0; }))
+      std::ranges::any_of(kLeafNumbers, [&p](const LeafNumber& n) { return n.is_of_prospect() && n.value(p) != 0; }))
     text += fmt::vformat(kProspectHead, values);
   static const TissueParams published;
   for (const LeafNumber& n : leaf_parameters()) {
-    if (states(kHead, n) || states(kProspectHead, n) || n.of(p) == n.of(published)) continue;
-    text += fmt::format("# {} {}", n.label.empty() ? n.name : n.label, n.of(p));
+    if (contains_placeholder(kHead, n) || contains_placeholder(kProspectHead, n) || n.value(p) == n.value(published))
+      continue;
+    text += fmt::format("# {} {}", n.label.empty() ? n.name : n.label, n.value(p));
     if (!n.unit.empty()) text += fmt::format(" {}", n.unit);
     if (!n.spectrum.empty()) text += fmt::format(", absorption {:016x}", hash(n.spectrum));
     text += '\n';

@@ -64,14 +64,14 @@ struct LeafNumber {
   constexpr bool is_of_prospect() const { return prospect && !published; }
 
   /// Returns the number of a leaf. This must be an element of kLeafNumbers.
-  double& of(TissueParams& p) const;
-  double of(const TissueParams& p) const { return is_parameter() ? of(const_cast<TissueParams&>(p)) : 1; }
+  double& value(TissueParams& p) const;
+  double value(const TissueParams& p) const { return is_parameter() ? value(const_cast<TissueParams&>(p)) : 1; }
 };
 
 /// All numbers of a leaf. The order is that of parameters, of the variables of fits and of their reports.
 extern const std::span<const LeafNumber> kLeafNumbers;
 
-inline double& LeafNumber::of(TissueParams& p) const {
+inline double& LeafNumber::value(TissueParams& p) const {
   assert(this >= kLeafNumbers.data() && this < kLeafNumbers.data() + kLeafNumbers.size());  // no copy
   return member ? p.*member : p.concentrations[static_cast<size_t>(this - kLeafNumbers.data())];
 }

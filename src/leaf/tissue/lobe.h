@@ -26,7 +26,7 @@ class Lobe {
 
   /// Returns the share of the lobe on the axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1]: cosine of the axis
   /// to the wall's normal. After the cut the density is density() / kept(). Fast for a TabulatedLobe only.
-  double kept(double cos_axis) const { return table_ ? table_->at(cos_axis) : kept_exactly(cos_axis); }
+  double kept_share(double cos_axis) const { return table_ ? table_->at(cos_axis) : integrate_kept_share(cos_axis); }
 
   /// Quantiles of the directions after the cut; nullptr unless this is a CutLobe.
   const LobeQuantiles* quantiles() const { return quantiles_; }
@@ -46,7 +46,7 @@ class Lobe {
   }
 
  protected:
-  /// `kept` at even steps of x = sqrt(1 - cos_axis).
+  /// `kept_share` at even steps of x = sqrt(1 - cos_axis).
   class KeptTable {
    public:
     explicit KeptTable(double exponent);
@@ -73,7 +73,7 @@ class Lobe {
   const LobeQuantiles* quantiles_ = nullptr;  ///< not owned
 
  private:
-  double kept_exactly(double cos_axis) const;
+  double integrate_kept_share(double cos_axis) const;
   double power(double c) const {
     if (whole_ < 0) return std::pow(c, exponent_);
     double result = 1;
@@ -89,7 +89,7 @@ class Lobe {
   const KeptTable* table_ = nullptr;  ///< not owned
 };
 
-/// A lobe with a table of `kept`, for frequent calls. Copies as a plain Lobe must not outlive it.
+/// A lobe with a table of `kept_share`, for frequent calls. Copies as a plain Lobe must not outlive it.
 class TabulatedLobe : public Lobe {
  public:
   explicit TabulatedLobe(double exponent) : TabulatedLobe(exponent, std::make_shared<const KeptTable>(exponent)) {}

@@ -41,9 +41,9 @@ struct Rays {
 };
 
 /// Returns the weights after Russian roulette of those below 0.1.
-inline Floats play_roulette(Floats weight, Floats uniform) {
+inline Floats russian_roulette(Floats weight, Floats uniform) {
   constexpr float kThreshold = 0.1f;
-  const Floats lifted = uniform * kThreshold < weight ? all(kThreshold) : all(0);
+  const Floats lifted = uniform * kThreshold < weight ? broadcast(kThreshold) : broadcast(0);
   return weight >= kThreshold ? weight : lifted;
 }
 
@@ -51,15 +51,15 @@ inline Floats play_roulette(Floats weight, Floats uniform) {
 /// variable over the depth is an exponential variable again, so what remains of the draw for absorption is reused.
 template <bool kWeighted, bool kSieve>
 Floats pass_medium(const Tables& tables, Rays& rays) {
-  const Floats depth = pick(tables.depth, rays.state) + pick(tables.depth_slope, rays.state) * rays.air_space;
-  const Floats way = rays.draws_again ? all(0) : depth / (kSieve ? cos_of(rays.cos_theta) : rays.cos_theta);
+  const Floats depth = gather(tables.depth, rays.state) + gather(tables.depth_slope, rays.state) * rays.air_space;
+  const Floats way = rays.draws_again ? broadcast(0) : depth / (kSieve ? cos_of(rays.cos_theta) : rays.cos_theta);
   const Floats exponential = rays.random.exponential();
   if constexpr (kWeighted) {
-    rays.weight = play_roulette(rays.weight * exp2_of(-way), rays.random.uniform());
+    rays.weight = russian_roulette(rays.weight * exp2_of(-way), rays.random.uniform());
     return exponential;
   } else {
-    rays.weight = exponential < way ? all(0) : rays.weight;
-    return larger(exponential - way, all(0));
+    rays.weight = exponential < way ? broadcast(0) : rays.weight;
+    return larger(exponential - way, broadcast(0));
   }
 }
 
@@ -73,18 +73,18 @@ inline Floats reflectance(Floats cos_i, Floats cos_t, Floats eta) {
 
 /// Reflects or refracts the rays that do not draw again, and finds their lobes.
 inline void cross_interface(const Tables& tables, Rays& rays) {
-  const Floats eta = pick(tables.eta, rays.state), sin_t = eta * rays.sin_theta, eta_cos = eta * rays.cos_theta;
+  const Floats eta = gather(tables.eta, rays.state), sin_t = eta * rays.sin_theta, eta_cos = eta * rays.cos_theta;
   // In this form cos_t keeps its precision where light is grazing on either side.
-  const Floats cos2_t = eta_cos * eta_cos + pick(tables.one_less_eta2, rays.state);
+  const Floats cos2_t = eta_cos * eta_cos + gather(tables.one_less_eta2, rays.state);
   const Ints total = cos2_t <= 0.f;
-  const Floats cos_t = square_root(total ? all(1) : cos2_t);
+  const Floats cos_t = square_root(total ? broadcast(1) : cos2_t);
   const Ints reflects = total | (rays.random.uniform() < reflectance(rays.cos_theta, cos_t, eta));
   const Ints refracts = ~(reflects | rays.draws_again);
   rays.up ^= reflects & ~rays.draws_again;
   rays.cos_theta = refracts ? cos_t : rays.cos_theta;
   rays.sin_theta = refracts ? sin_t : rays.sin_theta;
-  const Floats after_reflection = pick(tables.narrowness_reflected, rays.state);
-  const Floats after_refraction = pick(tables.narrowness_refracted, rays.state);
+  const Floats after_reflection = gather(tables.narrowness_reflected, rays.state);
+  const Floats after_refraction = gather(tables.narrowness_refracted, rays.state);
   rays.narrowness = rays.draws_again ? rays.narrowness : reflects ? after_reflection : after_refraction;
 }
 
@@ -92,7 +92,7 @@ inline void cross_interface(const Tables& tables, Rays& rays) {
 /// will draw again. Narrowness 0, no lobe, draws the axis itself.
 inline void perturb(Rays& rays, Floats exponential) {
   const Floats cos_a = exp2_of(-exponential * rays.narrowness);
-  const Floats sin_a = square_root(larger(1.f - cos_a * cos_a, all(0)));
+  const Floats sin_a = square_root(larger(1.f - cos_a * cos_a, broadcast(0)));
   const auto [cos_b, sin_b] = circle_point(rays.random.bits());
   // In the frame of the axis, the meridian and the parallel through it; the axis is taken to go up.
   const Floats across = sin_a * cos_b, sideways = sin_a * sin_b;
@@ -101,7 +101,8 @@ inline void perturb(Rays& rays, Floats exponential) {
   const Floats sine = square_root(ahead * ahead + sideways * sideways);
 
   const Ints kept = z > 0.f, turns = kept & (sine > kLeastCosine);
-  const Floats scale = 1.f / larger(sine, all(kLeastCosine)), turn_cos = ahead * scale, turn_sin = sideways * scale;
+  const Floats scale = 1.f / larger(sine, broadcast(kLeastCosine)), turn_cos = ahead * scale,
+               turn_sin = sideways * scale;
   const Floats cos_phi = rays.cos_phi, sin_phi = rays.sin_phi;
   rays.cos_phi = turns ? cos_phi * turn_cos - sin_phi * turn_sin : cos_phi;
   rays.sin_phi = turns ? sin_phi * turn_cos + cos_phi * turn_sin : sin_phi;
@@ -112,7 +113,7 @@ inline void perturb(Rays& rays, Floats exponential) {
 }
 
 /// Advances to the next interface. Returns the mask of the rays whose walk has ended, which keep their state.
-inline Ints arrive(Rays& rays) {
+inline Ints advance(Rays& rays) {
   const Ints next = rays.up ? (rays.state | 1) - 2 : (rays.state & ~1) + 2;
   const Ints outside = (next < 0) | (next >= static_cast<int32_t>(kStates));
   const Ints ended = (rays.weight == 0.f) | (outside & ~rays.draws_again);
@@ -123,11 +124,11 @@ inline Ints arrive(Rays& rays) {
 template <bool kWeighted, bool kSieve>
 Ints event(const Tables& tables, Slots& slots, size_t i) {
   Rays rays(slots, i);
-  rays.cos_theta = larger(rays.cos_theta, all(kLeastCosine));
+  rays.cos_theta = larger(rays.cos_theta, broadcast(kLeastCosine));
   const Floats exponential = pass_medium<kWeighted, kSieve>(tables, rays);
   cross_interface(tables, rays);
   perturb(rays, exponential);
-  const Ints ended = arrive(rays);
+  const Ints ended = advance(rays);
   rays.save(slots, i);
   return ended;
 }
@@ -137,7 +138,7 @@ template <bool kWeighted, bool kSieve>
 [[gnu::flatten]] uint64_t step(const Tables& tables, Slots& slots, size_t count) {
   static_assert(Slots::kCount % kLanes == 0 && Slots::kCount <= 64);
   uint64_t ended = 0;
-  for (size_t i = 0; i < count; i += kLanes) ended |= bits_of(event<kWeighted, kSieve>(tables, slots, i)) << i;
+  for (size_t i = 0; i < count; i += kLanes) ended |= to_bitmask(event<kWeighted, kSieve>(tables, slots, i)) << i;
   return ended;
 }
 

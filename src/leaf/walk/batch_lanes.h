@@ -39,7 +39,7 @@ void store(T* to, Register value) {
   __builtin_memcpy(__builtin_assume_aligned(to, sizeof(Register)), &value, sizeof(Register));
 }
 
-inline Floats all(float x) { return Floats{} + x; }
+inline Floats broadcast(float x) { return Floats{} + x; }
 inline Floats larger(Floats a, Floats b) { return a > b ? a : b; }
 inline Floats to_floats(Ints i) { return __builtin_convertvector(i, Floats); }
 
@@ -57,7 +57,7 @@ inline Floats square_root(Floats x) {
 }
 
 /// Returns table[index] of a table of sixteen, lane by lane.
-inline Floats pick(const float* table, Ints index) {
+inline Floats gather(const float* table, Ints index) {
 #if defined(__AVX512F__)
   return _mm512_maskz_permutexvar_ps(0xffff, reinterpret_cast<__m512i>(index), _mm512_load_ps(table));
 #elif defined(__AVX2__)
@@ -72,7 +72,7 @@ inline Floats pick(const float* table, Ints index) {
 }
 
 /// Returns the mask as bits: bit i is lane i.
-inline uint64_t bits_of(Ints mask) {
+inline uint64_t to_bitmask(Ints mask) {
 #if defined(__AVX512F__)
   return _mm512_cmplt_epi32_mask(reinterpret_cast<__m512i>(mask), _mm512_setzero_si512());
 #elif defined(__AVX2__)
@@ -90,7 +90,7 @@ inline uint64_t bits_of(Ints mask) {
 
 template <size_t kTerms>
 Floats polynomial(const float (&coefficients)[kTerms], Floats x) {
-  Floats sum = all(coefficients[kTerms - 1]);
+  Floats sum = broadcast(coefficients[kTerms - 1]);
   for (size_t i = kTerms - 1; i-- > 0;) sum = sum * x + coefficients[i];
   return sum;
 }
@@ -109,10 +109,10 @@ inline Floats log2_of(Floats x) {
 inline Floats exp2_of(Floats x) {
   constexpr float kRounder = 12582912;  // 1.5 * 2^23: adding it rounds to a whole number, found in the lowest bits
   constexpr float kTerms[] = {1, 0.693147182f, 0.240221068f, 0.0555035695f, 0.00967603177f, 0.00133908633f};
-  const Floats within = larger(x, all(-126)), shifted = within + kRounder;
+  const Floats within = larger(x, broadcast(-126)), shifted = within + kRounder;
   const Ints power = reinterpret_cast<Ints>(shifted) << 23;
   const Ints scaled = reinterpret_cast<Ints>(polynomial(kTerms, within - (shifted - kRounder))) + power;
-  return x < -126.f ? all(0) : reinterpret_cast<Floats>(scaled);
+  return x < -126.f ? broadcast(0) : reinterpret_cast<Floats>(scaled);
 }
 
 /// cos x for x in [0, 1], radians.

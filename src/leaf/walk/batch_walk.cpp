@@ -58,7 +58,7 @@ class Batch {
     for (StopPoll poll; live_ > 0; poll()) {
       uint64_t ended = step(tables_, slots_, live_);
       if (live_ < Slots::kCount) ended &= (uint64_t{1} << live_) - 1;
-      if (!traps_.empty()) ended |= trapped();
+      if (!traps_.empty()) ended |= absorb_trapped();
       // From the last to the first: the slot that moves into a gap is then never one that has ended.
       for (; ended != 0; ended ^= std::bit_floor(ended)) finish(static_cast<size_t>(std::bit_width(ended)) - 1);
     }
@@ -83,7 +83,7 @@ class Batch {
     return traps;
   }
   /// Ends the rays that are kept in such a medium, as absorbed.
-  uint64_t trapped() {
+  uint64_t absorb_trapped() {
     uint64_t bits = 0;
     for (size_t i = 0; i < live_; ++i)
       for (const Trap& trap : traps_) {
@@ -154,7 +154,7 @@ class Batch {
   bool up_;
 };
 
-std::vector<const batch::Kernel*> runnable() {
+std::vector<const batch::Kernel*> supported_kernels() {
   std::vector<const batch::Kernel*> kernels;
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) kernels.push_back(&batch::kAvx512);
@@ -167,7 +167,7 @@ std::vector<const batch::Kernel*> runnable() {
 }  // namespace
 
 std::span<const batch::Kernel* const> batch_kernels() {
-  static const std::vector<const batch::Kernel*> kernels = runnable();
+  static const std::vector<const batch::Kernel*> kernels = supported_kernels();
   return kernels;
 }
 

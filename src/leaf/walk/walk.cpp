@@ -19,7 +19,7 @@ template <size_t K>
 End<K> walk_lanes(const std::array<const Tissue*, K>& tissues, size_t hero, const Vec3d& wo, Absorption absorption,
                   const FirstEvent& first, RandomStream& rng) {
   Walker<K> ray(tissues, hero, wo, absorption, rng);
-  const auto surface = ray.ahead();
+  const auto surface = ray.next_crossings();
   const bool enters = first.branch >= surface[hero].reflectance;
   const double r2 = first.x * first.x + first.y * first.y;
   const DiskPoint p = r2 > 0 ? DiskPoint{first.x, first.y, r2} : sample_disk(rng);
@@ -54,7 +54,7 @@ std::array<double, K> estimate_subsurface_f_lanes(const std::array<const Tissue*
     for (size_t i = 0; i < K; ++i)
       if (weights[i] > 0) sum[i] += weights[i] * Walker<K>::lobe_density(lobe, ray.axis(i), inner[i]);
   };
-  if (!ray.enter(ray.ahead(), sample_disk(rng), connect)) return {};
+  if (!ray.enter(ray.next_crossings(), sample_disk(rng), connect)) return {};
   for (StopPoll poll; ray.inside() && ray.step(connect);) poll();
   for (size_t i = 0; i < K; ++i) sum[i] *= factor[i];
   return sum;
@@ -118,7 +118,7 @@ double surface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi) {
   const Vec3d mirror{-wo.x, -wo.y, wo.z};
   const Lobe& lobe = tissue.surface_lobe();
   return surface_reflectance(tissue, wo.z) * lobe.density(dot(mirror, wi)) /
-         (lobe.kept(std::abs(wo.z)) * std::abs(wi.z));
+         (lobe.kept_share(std::abs(wo.z)) * std::abs(wi.z));
 }
 
 double estimate_subsurface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, Absorption absorption,

@@ -98,7 +98,7 @@ class Walker {
   }
 
   /// Reflectance and refraction at the next interface.
-  Crossings ahead() const {
+  Crossings next_crossings() const {
     Crossings c;
     for (size_t i = 0; i < K; ++i) c[i] = fresnel(std::abs(v_[i].z), eta(i));
     return c;
@@ -108,7 +108,7 @@ class Walker {
   template <class Connect>
   void scatter(bool refracts, const Crossings& crossings, DiskPoint p, const Connect& connect) {
     for (size_t i = 0; i < K && K > 1; ++i)
-      density_[i] *= chance(refracts, crossings[i]) / hero_chance(refracts, crossings);
+      density_[i] *= probability(refracts, crossings[i]) / hero_probability(refracts, crossings);
     turn(refracts, crossings, p, connect);
   }
 
@@ -130,7 +130,7 @@ class Walker {
   template <class Connect>
   bool step(const Connect& connect) {
     if (!pass_medium()) return false;
-    const Crossings crossings = ahead();
+    const Crossings crossings = next_crossings();
     const bool refracts = rng_.uniform_double() >= crossings[hero_].reflectance;
     scatter(refracts, crossings, sample_disk(rng_), connect);
     return total_mirrors_ < 2;
@@ -154,7 +154,7 @@ class Walker {
 
   /// Density, 1/sr, of directions drawn around `axis` and cut at the interface.
   static double lobe_density(const Lobe& lobe, const Vec3d& axis, const Vec3d& w) {
-    return lobe.density(dot(axis, w)) / lobe.kept(std::abs(axis.z));
+    return lobe.density(dot(axis, w)) / lobe.kept_share(std::abs(axis.z));
   }
 
  private:
@@ -168,8 +168,8 @@ class Walker {
   const Tissue& tissue() const { return *tissues_[hero_]; }
   size_t next_medium() const { return up_ ? medium_ - 1 : medium_ + 1; }
   double eta(size_t lane) const { return tissues_[lane]->n[medium_] / tissues_[lane]->n[next_medium()]; }
-  static double chance(bool refracts, const Crossing& c) { return refracts ? 1 - c.reflectance : c.reflectance; }
-  double hero_chance(bool refracts, const Crossings& c) const { return chance(refracts, c[hero_]); }
+  static double probability(bool refracts, const Crossing& c) { return refracts ? 1 - c.reflectance : c.reflectance; }
+  double hero_probability(bool refracts, const Crossings& c) const { return probability(refracts, c[hero_]); }
 
   /// Optical depth of the current medium. Where the air space moves, media 2 and 4 share the mesophyll.
   double depth(size_t lane) const {
@@ -231,7 +231,7 @@ class Walker {
     const Vec3d drawn = perturb(lobe, direction(), up_, p, rng_);
     if constexpr (K > 1) {
       last_ = {&lobe, v_, density_};
-      if (axes_differ()) weigh_axes(lobe, drawn);
+      if (axes_differ()) update_lane_densities(lobe, drawn);
     }
     v_.fill(drawn);
   }
@@ -243,7 +243,7 @@ class Walker {
     return false;
   }
 
-  void weigh_axes(const Lobe& lobe, const Vec3d& drawn) {
+  void update_lane_densities(const Lobe& lobe, const Vec3d& drawn) {
     const double hero_density = lobe_density(lobe, direction(), drawn);
     for (size_t i = 0; i < K; ++i)
       if (i != hero_ && hero_density > 0 && density_[i] > 0 && v_[i] != direction())

@@ -159,8 +159,8 @@ class SolvedBsdf final : public Bsdf {
     Incidence b;
     set(b, wi);
     const Float4 subsurface = a.enters * b.enters *
-                              hit_.table->mutual({wo.z < 0, a.sine, a.nodes}, {wi.z < 0, b.sine, b.nodes},
-                                                 cos_phi(wo, wi, a.sine * b.sine), hit_.selection->columns);
+                              hit_.table->reciprocal_value({wo.z < 0, a.sine, a.nodes}, {wi.z < 0, b.sine, b.nodes},
+                                                           cos_phi(wo, wi, a.sine * b.sine), hit_.selection->columns);
     return lobe == 0 ? subsurface : subsurface + a.surface * b.surface * lobe;
   }
 

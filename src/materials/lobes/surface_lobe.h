@@ -61,7 +61,7 @@ class SurfaceLobe {
   const Cut& cut_at(float cos_theta) const {
     if (cut_.cos_theta == cos_theta) return cut_;
     cut_.cos_theta = cos_theta;
-    cut_.kept = static_cast<float>(lobe_->kept(std::abs(cos_theta)));
+    cut_.kept = static_cast<float>(lobe_->kept_share(std::abs(cos_theta)));
     cut_.made_good = 1 / cut_.kept;
     return cut_;
   }
