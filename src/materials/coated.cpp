@@ -57,8 +57,8 @@ class CoatParams {
   LaneIndices indices(const SampledWavelengths& lambda) const { return {eta_->sample(lambda), lambda}; }
   /// Makes the BSDF of the coat over `base`.
   template <class Base>
-  const Bsdf* cover(const Base& base, const LaneIndices& indices, const Hit& hit, const SampledWavelengths& lambda,
-                    Arena& arena) const {
+  const Bsdf* make_layered_bsdf(const Base& base, const LaneIndices& indices, const Hit& hit,
+                                const SampledWavelengths& lambda, Arena& arena) const {
     const CoatMedium medium{thickness_->evaluate(hit.at), albedo_->evaluate(hit.at, lambda) * indices.mask(),
                             g_->evaluate(hit.at)};
     return arena.make<LayeredBsdf<Base>>(roughness_.at(hit.at), indices, base, medium, walks_);
@@ -96,8 +96,8 @@ class CoatedDiffuse final : public Material {
   }
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const LaneIndices indices = coat_.indices(lambda);
-    return coat_.cover(DiffuseBase(reflectance_->evaluate(hit.at, lambda) * indices.mask()), indices, hit, lambda,
-                       arena);
+    return coat_.make_layered_bsdf(DiffuseBase(reflectance_->evaluate(hit.at, lambda) * indices.mask()), indices, hit,
+                                   lambda, arena);
   }
   bool is_reciprocal() const override { return true; }
   bool needs_details() const override { return coat_.has_direction(); }
@@ -132,7 +132,8 @@ class CoatedConductor final : public Material {
     const Float4 eta = indices.eta().v;
     // Fresnel's formula requires indices relative to the medium before the metal, which is the coat's.
     const ConductorIndices below_coat(SampledSpectrum(metal.eta.v / eta), SampledSpectrum(metal.k.v / eta));
-    return coat_.cover(ConductorBase(roughness_.at(hit.at), below_coat, indices.mask()), indices, hit, lambda, arena);
+    return coat_.make_layered_bsdf(ConductorBase(roughness_.at(hit.at), below_coat, indices.mask()), indices, hit,
+                                   lambda, arena);
   }
   bool is_reciprocal() const override { return true; }
   bool needs_details() const override { return coat_.has_direction() || roughness_.has_direction(); }

@@ -139,12 +139,12 @@ class LeafLambert final : public Material {
         fmt::format("{}, {} incidences from {}, {}", leaf_.is_reciprocal() ? "reciprocal means" : "means",
                     incidences_.size(), incidences_[0].theta_deg, wavelengths_key(preparation.wavelengths));
     if (file_.is_given()) {
-      spectra_ = preparation.share<TwoSidedSpectra>(how + file_.key(), [&] { return of_file(preparation); });
+      spectra_ = preparation.share<TwoSidedSpectra>(how + file_.key(), [&] { return spectra_from_file(preparation); });
       return;
     }
     leaf_.check_wavelengths(preparation.wavelengths);
     if (varies_) {
-      spectra_ = std::make_shared<const TwoSidedSpectra>(over_depth(preparation));
+      spectra_ = std::make_shared<const TwoSidedSpectra>(spectra_over_depth(preparation));
       return;
     }
     const leaf::TableRequest request = request_for(preparation.wavelengths);
@@ -177,7 +177,7 @@ class LeafLambert final : public Material {
     return request;
   }
 
-  TwoSidedSpectra of_file(const Preparation& preparation) const {
+  TwoSidedSpectra spectra_from_file(const Preparation& preparation) const {
     const leaf::Table& table = *table_of_file_;
     return means(leaf::at_wavelengths(table, file_wavelengths(table.wavelengths_nm, preparation.wavelengths,
                                                               file_.where(), file_.path().string())),
@@ -185,7 +185,7 @@ class LeafLambert final : public Material {
   }
 
   /// For a leaf whose chemistry or thickness varies; not cached on disk.
-  TwoSidedSpectra over_depth(const Preparation& preparation) const {
+  TwoSidedSpectra spectra_over_depth(const Preparation& preparation) const {
     const leaf::TableRequest request = request_for(preparation.wavelengths);
     const leaf::DepthTable table = leaf::make_depth_table(
         leaf::TissueModel(request.params), request.theta_deg, index_wavelengths(preparation.wavelengths),

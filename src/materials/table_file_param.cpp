@@ -12,8 +12,8 @@ TableFileParam::TableFileParam(const Params& p, std::span<const std::string_view
   path_ = p.file("tablefile");
   where_ = p.where("tablefile");
   for (const Param& of_leaf : leaf_params())
-    if (is_of_tissue(of_leaf)) look_for(p, of_leaf.name);
-  for (const std::string_view name : also) look_for(p, name);
+    if (is_of_tissue(of_leaf)) note_unused(p, of_leaf.name);
+  for (const std::string_view name : also) note_unused(p, name);
 }
 
 std::shared_ptr<const leaf::Table> TableFileParam::read(const Params& p, double surface) {
@@ -29,7 +29,7 @@ std::shared_ptr<const leaf::Table> TableFileParam::read(const Params& p, double 
   return std::make_shared<const leaf::Table>(std::move(read.table));
 }
 
-void TableFileParam::look_for(const Params& p, std::string_view name) {
+void TableFileParam::note_unused(const Params& p, std::string_view name) {
   if (p.given(name)) unused_.push_back({name, p.where(name)});
 }
 

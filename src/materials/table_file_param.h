@@ -44,7 +44,7 @@ class TableFileParam {
   void warn(const Log& log);
 
  private:
-  void look_for(const Params& p, std::string_view name);
+  void note_unused(const Params& p, std::string_view name);
 
   std::filesystem::path path_;  ///< empty: no file is given
   Location where_;

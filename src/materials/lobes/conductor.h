@@ -42,14 +42,14 @@ class ConductorBsdf final : public Bsdf {
   /// f and sample without a random stream, for LayeredBsdf.
   SampledSpectrum f(const Vec3& wo_, const Vec3& wi_) const {
     if (!scatters(wo_, wi_)) return {};
-    const Vec3 wo = upwards(wo_), wi = upwards(wi_), m = normalize_any(wo + wi);
-    return fresnel(dot(wo, m)) * (facets_.density(m) * facets_.seen_from_both(wo, wi));
+    const Vec3 wo = to_upper_side(wo_), wi = to_upper_side(wi_), m = normalize_any(wo + wi);
+    return fresnel(dot(wo, m)) * (facets_.density(m) * facets_.smith_visibility(wo, wi));
   }
 
   float pdf(const Vec3& wo_, const Vec3& wi_) const override {
     if (!scatters(wo_, wi_)) return 0;
-    const Vec3 wo = upwards(wo_), wi = upwards(wi_);
-    return facets_.density(normalize_any(wo + wi)) * facets_.visibility(wo) / 4;
+    const Vec3 wo = to_upper_side(wo_), wi = to_upper_side(wi_);
+    return facets_.density(normalize_any(wo + wi)) * facets_.g1_over_cosine(wo) / 4;
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream&) const override {
@@ -61,7 +61,7 @@ class ConductorBsdf final : public Bsdf {
       const float cosine = std::abs(wo.z);
       return BsdfSample{fresnel(cosine) * (1 / cosine), {-wo.x, -wo.y, wo.z}, 1, flags()};
     }
-    const Vec3 up = upwards(wo), m = facets_.sample_visible(up, u);
+    const Vec3 up = to_upper_side(wo), m = facets_.sample_visible(up, u);
     Vec3 wi = 2 * dot(up, m) * m - up;
     if (!(wi.z > 0)) return {};
     if (wo.z < 0) wi.z = -wi.z;
@@ -74,7 +74,7 @@ class ConductorBsdf final : public Bsdf {
   bool scatters(const Vec3& wo, const Vec3& wi) const {
     return !is_smooth() && same_side(wo, wi) && !is_grazing(wo) && !is_grazing(wi);
   }
-  static Vec3 upwards(const Vec3& w) { return {w.x, w.y, std::abs(w.z)}; }
+  static Vec3 to_upper_side(const Vec3& w) { return {w.x, w.y, std::abs(w.z)}; }
   SampledSpectrum fresnel(float cosine) const { return fresnel_conductor(cosine, indices_.eta, indices_.k) * mask_; }
 
   TrowbridgeReitz facets_;

@@ -33,7 +33,7 @@ class LaneIndices {
   };
   /// Chooses among the active lanes whose `share` is positive (one at least): the hero, or one drawn uniformly if it is
   /// not set or not among them.
-  Continuing one_of(const SampledSpectrum& share, RandomStream& rng) const {
+  Continuing choose_lane(const SampledSpectrum& share, RandomStream& rng) const {
     std::array<int, kLanes> lit{};
     int among = 0;
     for (int i = 0; i < count_; ++i)
@@ -42,7 +42,7 @@ class LaneIndices {
     return {lit[size_t(std::min(int(rng.uniform() * float(among)), among - 1))], among};
   }
   /// Index of the i-th active lane.
-  float of(int i) const { return eta_[lane(i)]; }
+  float index(int i) const { return eta_[lane(i)]; }
   const SampledSpectrum& eta() const { return eta_; }
   /// 1 in active lanes, 0 elsewhere.
   const SampledSpectrum& mask() const { return mask_; }
@@ -84,8 +84,8 @@ class RoughDielectricBsdf final : public Bsdf {
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
     const bool reflects = same_side(wo, wi);
     SampledSpectrum f;
-    for (int i = 0; i < models(); ++i) {
-      const auto pair = border(i).pair(wo, wi);
+    for (int i = 0; i < interface_count(); ++i) {
+      const auto pair = lane_interface(i).pair(wo, wi);
       f[indices_.lane(i)] = pair.f * pair.share(reflects);
     }
     return indices_.disperses() || indices_.count() == 0 ? f : indices_.mask() * f[indices_.lane(0)];
@@ -94,18 +94,18 @@ class RoughDielectricBsdf final : public Bsdf {
   float pdf(const Vec3& wo, const Vec3& wi) const override {
     const bool reflects = same_side(wo, wi);
     float sum = 0;
-    for (int i = 0; i < models(); ++i) {
-      const auto pair = border(i).pair(wo, wi);
+    for (int i = 0; i < interface_count(); ++i) {
+      const auto pair = lane_interface(i).pair(wo, wi);
       sum += pair.pdf * pair.share(reflects);
     }
-    return models() > 0 ? sum / float(models()) : 0;
+    return interface_count() > 0 ? sum / float(interface_count()) : 0;
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
-    if (is_grazing(wo) || models() == 0) return {};
-    const float place = uc * float(models());
-    const int chosen = std::min(int(place), models() - 1);
-    const DielectricInterface one = border(chosen);
+    if (is_grazing(wo) || interface_count() == 0) return {};
+    const float place = uc * float(interface_count());
+    const int chosen = std::min(int(place), interface_count() - 1);
+    const DielectricInterface one = lane_interface(chosen);
     const Vec3 m = one.facet(wo, u);
     const bool reflects = place - float(chosen) < one.fresnel(wo, m);
     const auto way = reflects ? one.reflect(wo, m) : one.refract(wo, m);
@@ -121,8 +121,8 @@ class RoughDielectricBsdf final : public Bsdf {
 
  private:
   /// Number of interfaces: one for all lanes, or one for each.
-  int models() const { return indices_.disperses() ? indices_.count() : std::min(indices_.count(), 1); }
-  DielectricInterface border(int i) const { return {facets_, indices_.of(i)}; }
+  int interface_count() const { return indices_.disperses() ? indices_.count() : std::min(indices_.count(), 1); }
+  DielectricInterface lane_interface(int i) const { return {facets_, indices_.index(i)}; }
 
   TrowbridgeReitz facets_;
   LaneIndices indices_;
@@ -153,7 +153,7 @@ class SmoothDielectricBsdf final : public Bsdf {
     SampledSpectrum share;
     float sum = 0;
     for (int i = 0; i < indices_.count(); ++i) {
-      const float eta = wo.z > 0 ? indices_.of(i) : 1 / indices_.of(i);
+      const float eta = wo.z > 0 ? indices_.index(i) : 1 / indices_.index(i);
       share[indices_.lane(i)] = fresnel_dielectric(cosine, eta);
       sum += share[indices_.lane(i)];
     }
@@ -166,7 +166,7 @@ class SmoothDielectricBsdf final : public Bsdf {
  private:
   /// All lanes have one index and one direction.
   std::optional<BsdfSample> refract_all(const Vec3& wo, float chance) const {
-    const DielectricInterface border({0, 0}, indices_.of(0));
+    const DielectricInterface lane_interface({0, 0}, indices_.index(0));
     const auto way = border.refract(wo, {0, 0, 1});
     if (!way) return {};
     return BsdfSample{.f = indices_.mask() * (way->weight / std::abs(way->wi.z)),
@@ -179,8 +179,8 @@ class SmoothDielectricBsdf final : public Bsdf {
   /// One lane continues, none that is totally reflected; the sample is black in the other lanes.
   std::optional<BsdfSample> refract_one(const Vec3& wo, const SampledSpectrum& reflected, float chance,
                                         RandomStream& rng) const {
-    const auto [chosen, among] = indices_.one_of(SampledSpectrum(indices_.mask().v - reflected.v), rng);
-    const DielectricInterface border({0, 0}, indices_.of(chosen));
+    const auto [chosen, among] = indices_.choose_lane(SampledSpectrum(indices_.mask().v - reflected.v), rng);
+    const DielectricInterface lane_interface({0, 0}, indices_.index(chosen));
     const auto way = border.refract(wo, {0, 0, 1});
     if (!way) return {};
     BsdfSample s{.f = {},
@@ -211,7 +211,7 @@ class ThinDielectricBsdf final : public Bsdf {
     SampledSpectrum reflected, transmitted;
     float sum = 0;
     for (int i = 0; i < indices_.count(); ++i) {
-      const float one_face = fresnel_dielectric(cosine, indices_.of(i)), both = 2 * one_face / (1 + one_face);
+      const float one_face = fresnel_dielectric(cosine, indices_.index(i)), both = 2 * one_face / (1 + one_face);
       reflected[indices_.lane(i)] = both;
       transmitted[indices_.lane(i)] = 1 - both;
       sum += both;

@@ -61,8 +61,8 @@ class DielectricInterface {
     if (!(wi.z > 0)) return {};
     Way way{wi, share, 1};
     if (!is_smooth()) {
-      way.pdf = facets_.density(m) * facets_.visibility(wo) / 4;
-      way.weight *= passes(wo, wi);
+      way.pdf = facets_.density(m) * facets_.g1_over_cosine(wo) / 4;
+      way.weight *= g2_over_g1(wo, wi);
     }
     if (wo_.z < 0) way.wi.z = -way.wi.z;
     return way;
@@ -79,8 +79,9 @@ class DielectricInterface {
     if (!(wi.z < 0)) return {};
     Way way{wi, (1 - fresnel_dielectric(cosine, eta)) / (eta * eta), 1};
     if (!is_smooth()) {
-      way.pdf = facets_.density(m) * facets_.visibility(wo) * cosine * spread(cosine, cosine_beyond, eta);
-      way.weight *= passes(wo, {wi.x, wi.y, -wi.z});
+      way.pdf =
+          facets_.density(m) * facets_.g1_over_cosine(wo) * cosine * refraction_jacobian(cosine, cosine_beyond, eta);
+      way.weight *= g2_over_g1(wo, {wi.x, wi.y, -wi.z});
     }
     if (wo_.z < 0) way.wi.z = -way.wi.z;
     return way;
@@ -90,7 +91,7 @@ class DielectricInterface {
   Pair reflected(const Vec3& wo, const Vec3& wi, float eta) const {
     const Vec3 m = normalize_any(wo + wi);
     const float area = facets_.density(m);
-    return {area * facets_.seen_from_both(wo, wi), area * facets_.visibility(wo) / 4,
+    return {area * facets_.smith_visibility(wo, wi), area * facets_.g1_over_cosine(wo) / 4,
             fresnel_dielectric(dot(wo, m), eta)};
   }
 
@@ -100,21 +101,21 @@ class DielectricInterface {
     if (m.z < 0) m = -m;
     const float cosine = float(dot(to_double(wo), m)), beyond = float(-dot(to_double(wi), m));
     if (cosine <= 0 || beyond <= 0) return {};
-    const float area = facets_.density(to_float(m)) * cosine * spread(cosine, beyond, eta);
-    return {area * 4 * facets_.seen_from_both(wo, {wi.x, wi.y, -wi.z}) / (eta * eta), area * facets_.visibility(wo),
-            fresnel_between(cosine, beyond, eta)};
+    const float area = facets_.density(to_float(m)) * cosine * refraction_jacobian(cosine, beyond, eta);
+    return {area * 4 * facets_.smith_visibility(wo, {wi.x, wi.y, -wi.z}) / (eta * eta),
+            area * facets_.g1_over_cosine(wo), fresnel_between(cosine, beyond, eta)};
   }
 
   /// Jacobian of refraction: solid angle of facet normals over that of refracted directions (Walter et al. 2007);
   /// cosines of both directions to the facet.
-  static float spread(float cosine, float beyond, float eta) {
+  static float refraction_jacobian(float cosine, float beyond, float eta) {
     const float whole = cosine / eta - beyond;
     return beyond / (whole * whole);
   }
 
   /// Share of the facets visible from wo that are visible from wi too: G2 / G1.
-  float passes(const Vec3& wo, const Vec3& wi) const {
-    return 4 * wi.z * facets_.seen_from_both(wo, wi) / facets_.visibility(wo);
+  float g2_over_g1(const Vec3& wo, const Vec3& wi) const {
+    return 4 * wi.z * facets_.smith_visibility(wo, wi) / facets_.g1_over_cosine(wo);
   }
 
   TrowbridgeReitz facets_;

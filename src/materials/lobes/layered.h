@@ -57,7 +57,7 @@ class DiffuseBase {
     return BsdfSample{f(wo, wi), wi, pdf(wo, wi), Lobes::reflection | Lobes::diffuse};
   }
   /// Facets whose reflection approximates the base's lobe seen through the coat; none for a diffuse base.
-  std::optional<TrowbridgeReitz> seen_through(const TrowbridgeReitz&, float) const { return {}; }
+  std::optional<TrowbridgeReitz> reflection_through_coat(const TrowbridgeReitz&, float) const { return {}; }
 
  private:
   SampledSpectrum reflectance_;
@@ -77,7 +77,7 @@ class ConductorBase {
   std::optional<BsdfSample> sample(const Vec3& wo, Vec2 u) const { return metal_.sample(wo, u); }
   /// As above. Width of the lobe for light near the normal: twice the metal's slope, times eta outside; the coat's
   /// slope times eta - 1, on entry and on exit.
-  std::optional<TrowbridgeReitz> seen_through(const TrowbridgeReitz& coat, float eta) const {
+  std::optional<TrowbridgeReitz> reflection_through_coat(const TrowbridgeReitz& coat, float eta) const {
     if (coat.is_smooth() && is_smooth()) return {};
     const auto width = [&](float own, float above) {
       return std::clamp(std::hypot(eta * own, (eta - 1) * above * 0.7f), 0.003f, 1.f);
@@ -154,9 +154,9 @@ class LayeredBsdf final : public Bsdf {
     const Vec3 wo = wo_.z < 0 ? -wo_ : wo_, wi = wo_.z < 0 ? -wi_ : wi_;
     if (coat_.is_smooth() && base_.is_smooth() && medium_.albedo.is_black()) return 0;
     // Below 1: where the first lane is reflected totally, another may not be.
-    const float reflected = std::min(fresnel_dielectric(wo.z, indices_.of(0)), 0.95f);
+    const float reflected = std::min(fresnel_dielectric(wo.z, indices_.index(0)), 0.95f);
     float density = wi.z * kInvPi;
-    if (const auto lobe = base_.seen_through(coat_, indices_.of(0)))
+    if (const auto lobe = base_.reflection_through_coat(coat_, indices_.index(0)))
       density = std::lerp(density, density_folded(*lobe, wo, wi), kLobeShare);
     if (coat_.is_smooth()) return (1 - reflected) * density;
     return std::lerp(density, density_folded(coat_, wo, wi), std::max(reflected, 0.05f));
@@ -172,14 +172,14 @@ class LayeredBsdf final : public Bsdf {
   };
   /// One coat for all lanes, or that of one lane.
   Coat draw_coat(RandomStream& rng) const {
-    if (!indices_.disperses()) return {{coat_, indices_.of(0)}, indices_.mask()};
-    const int chosen = indices_.one_of(indices_.mask(), rng).i;
-    Coat coat{{coat_, indices_.of(chosen)}, {}};
+    if (!indices_.disperses()) return {{coat_, indices_.index(0)}, indices_.mask()};
+    const int chosen = indices_.choose_lane(indices_.mask(), rng).i;
+    Coat coat{{coat_, indices_.index(chosen)}, {}};
     coat.lanes[indices_.lane(chosen)] = float(indices_.count());
     return coat;
   }
 
-  static Vec2 pair_of(RandomStream& rng) {
+  static Vec2 uniform_pair(RandomStream& rng) {
     const float x = rng.uniform(), y = rng.uniform();
     return {x, y};
   }
@@ -192,7 +192,7 @@ class LayeredBsdf final : public Bsdf {
       const Vec3 m = normalize_any(wo + w);
       return dot(wo, m) > 0 ? facets.density(m) : 0;
     };
-    return (density(wi) + density({wi.x, wi.y, -wi.z})) * facets.visibility(wo) / 4;
+    return (density(wi) + density({wi.x, wi.y, -wi.z})) * facets.g1_over_cosine(wo) / 4;
   }
 
   /// State of a walk: height z over the base, direction of travel w.
@@ -217,7 +217,7 @@ class LayeredBsdf final : public Bsdf {
   }
 
   /// Russian roulette of walks of small weight; returns false if the walk ends.
-  static bool survives(Walk& at, int depth, RandomStream& rng) {
+  static bool survives_roulette(Walk& at, int depth, RandomStream& rng) {
     constexpr int kSafe = 4;
     constexpr float kLittle = 0.25f;
     const float most = at.weight.max();
@@ -242,7 +242,7 @@ class LayeredBsdf final : public Bsdf {
 
   /// Light scattered in the medium that reaches direction `up` through specular reflections alone, which no sampled
   /// direction can hit: first down to the base, or first up to the coat. At most `events` further events.
-  SampledSpectrum by_mirrors(const Mirrors& between, const Walk& at, const Vec3& up, int events) const {
+  SampledSpectrum specular_connection(const Mirrors& between, const Walk& at, const Vec3& up, int events) const {
     constexpr float kNegligible = 1e-7f;
     const auto scattered = [&](const Vec3& w) { return detail::henyey_greenstein(dot(at.w, w), medium_.g); };
     SampledSpectrum first_down = between.base * (scattered({up.x, up.y, -up.z}) * transmittance(at.z, up));
@@ -261,8 +261,8 @@ class LayeredBsdf final : public Bsdf {
   /// Estimate of f for light that passes the base or the medium.
   SampledSpectrum walk_between(const Coat& coat, const Vec3& wo, const Vec3& wi, RandomStream& rng) const {
     const DielectricInterface& border = coat.border;
-    const auto in = border.refract(wo, border.facet(wo, pair_of(rng)));
-    const auto out = border.refract(wi, border.facet(wi, pair_of(rng)));
+    const auto in = border.refract(wo, border.facet(wo, uniform_pair(rng)));
+    const auto out = border.refract(wi, border.facet(wi, uniform_pair(rng)));
     if (!in || is_grazing(in->wi)) return {};
     // Rough facets may still be hit from below if this sample has no transmitted direction.
     const bool connects = out && !is_grazing(out->wi);
@@ -287,18 +287,19 @@ class LayeredBsdf final : public Bsdf {
 
     SampledSpectrum sum;
     Walk at{medium_.thickness, in->wi, coat.lanes * in->weight};
-    for (int depth = 0; depth < walks_.max_depth && survives(at, depth, rng); ++depth) {
+    for (int depth = 0; depth < walks_.max_depth && survives_roulette(at, depth, rng); ++depth) {
       if (is_grazing(at.w)) break;
       if (advance(at, rng)) {
         const float p = detail::henyey_greenstein(dot(at.w, up), medium_.g);
         sum += at.weight * (p * against(p) * transmittance(medium_.thickness - at.z, up) * out_weight / up.z);
-        if (mirrors) sum += at.weight * by_mirrors(between, at, up, walks_.max_depth - 1 - depth) * (out_weight / up.z);
+        if (mirrors)
+          sum += at.weight * specular_connection(between, at, up, walks_.max_depth - 1 - depth) * (out_weight / up.z);
         const Vec3 before = at.w;
-        at.w = detail::sample_henyey_greenstein(before, medium_.g, pair_of(rng));
+        at.w = detail::sample_henyey_greenstein(before, medium_.g, uniform_pair(rng));
         if (is_grazing(at.w)) break;
         sum += escaped(at, detail::henyey_greenstein(dot(before, at.w), medium_.g), false);
       } else if (at.w.z > 0) {
-        const auto back = border.reflect(-at.w, border.facet(-at.w, pair_of(rng)));
+        const auto back = border.reflect(-at.w, border.facet(-at.w, uniform_pair(rng)));
         if (!back) break;
         at.weight *= back->weight;
         at.w = back->wi;
@@ -306,7 +307,7 @@ class LayeredBsdf final : public Bsdf {
         if (!base_.is_smooth())
           sum += at.weight * base_.f(-at.w, up) *
                  (against(base_.pdf(-at.w, up)) * transmittance(medium_.thickness, up) * out_weight);
-        const auto next = base_.sample(-at.w, pair_of(rng));
+        const auto next = base_.sample(-at.w, uniform_pair(rng));
         if (!next || is_grazing(next->wi)) break;
         at.weight *= next->f * (std::abs(next->wi.z) / next->pdf);
         at.w = next->wi;
@@ -333,15 +334,15 @@ class LayeredBsdf final : public Bsdf {
     if (!in || is_grazing(in->wi)) return {};
     Walk at{medium_.thickness, in->wi, coat.lanes * (in->weight / (1 - reflected))};
     bool is_delta = coat_.is_smooth();
-    for (int depth = 0; survives(at, depth, rng); ++depth) {
+    for (int depth = 0; survives_roulette(at, depth, rng); ++depth) {
       if (is_grazing(at.w)) return {};
       const bool may_go_on = depth < walks_.max_depth;
       if (advance(at, rng)) {
         if (!may_go_on) return {};
-        at.w = detail::sample_henyey_greenstein(at.w, medium_.g, pair_of(rng));
+        at.w = detail::sample_henyey_greenstein(at.w, medium_.g, uniform_pair(rng));
         is_delta = false;
       } else if (at.w.z > 0) {
-        const Vec3 inner = border.facet(-at.w, pair_of(rng));
+        const Vec3 inner = border.facet(-at.w, uniform_pair(rng));
         const float back = border.fresnel(-at.w, inner);
         const bool stays = rng.uniform() < back;
         const auto way = stays ? border.reflect(-at.w, inner) : border.refract(-at.w, inner);
@@ -355,7 +356,7 @@ class LayeredBsdf final : public Bsdf {
               .flags = Lobes::reflection | Lobes::stochastic | (is_delta ? Lobes::specular : Base::kLobe)};
       } else {
         if (!may_go_on) return {};
-        const auto next = base_.sample(-at.w, pair_of(rng));
+        const auto next = base_.sample(-at.w, uniform_pair(rng));
         if (!next) return {};
         at.weight *= next->f * (std::abs(next->wi.z) / next->pdf);
         at.w = next->wi;

@@ -36,7 +36,7 @@ class SolvedBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return leaf_scatters(wo, wi) ? SampledSpectrum(leaf_f(wo, wi, surface_.spread(wo, wi))) : SampledSpectrum();
+    return leaf_scatters(wo, wi) ? SampledSpectrum(leaf_f(wo, wi, surface_.lobe_density(wo, wi))) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
@@ -56,7 +56,7 @@ class SolvedBsdf final : public Bsdf {
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
-    return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, surface_.spread(wo, wi)) : 0;
+    return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, surface_.lobe_density(wo, wi)) : 0;
   }
 
   /// Scatters light along the model's own incident direction, whichever direction paths use.
@@ -142,7 +142,7 @@ class SolvedBsdf final : public Bsdf {
   /// Completes a sample; nothing if f is black.
   std::optional<BsdfSample> sampled(const Vec3& wo, Vec3 wi, Lobes from) const {
     std::optional<BsdfSample> result;
-    const float lobe = surface_.spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    const float lobe = surface_.lobe_density(wo, wi), density = leaf_pdf(wo, wi, lobe);
     if (density == 0) return result;
     // Constructed in place: a copy would wait for the stores of its parts.
     BsdfSample& sample = result.emplace();
@@ -175,7 +175,7 @@ class SolvedBsdf final : public Bsdf {
     const Incidence& in = incidence_at(incident);
     const Float4 subsurface = subsurface_f(in, incident, leaving);
     if (lobe == 0) return subsurface;
-    return subsurface + in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
+    return subsurface + in.reflectance * (lobe * surface_.normalisation(incident.z) / std::abs(leaving.z));
   }
 
   /// The Fourier series of leaf/solve/modes.h, by lane.
@@ -192,7 +192,7 @@ class SolvedBsdf final : public Bsdf {
     const float cosine = std::abs(wi.z) * kInvPi;
     if (!same_side(wo, wi)) return choice.transmitted * cosine;
     const float subsurface = choice.reflected * cosine;
-    return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.made_good(wo.z);
+    return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.normalisation(wo.z);
   }
 
   SolvedHit hit_;

@@ -28,7 +28,7 @@ inline Vec2 unit_circle(float u) {
 }
 
 /// Lobe of a leaf's surface about the mirror direction: a power of the cosine, cut off at the surface and normalised
-/// after the cut. The surface's share of the BSDF is F spread(wo, wi) made_good(incident) / |cos theta|, with the
+/// after the cut. The surface's share of the BSDF is F spread(wo, wi) normalisation(incident) / |cos theta|, with the
 /// cosine of the exitant direction.
 class SurfaceLobe {
  public:
@@ -36,15 +36,15 @@ class SurfaceLobe {
   explicit SurfaceLobe(const leaf::Lobe* lobe) : lobe_(lobe) {}
 
   /// Density before the cut, 1/sr, symmetric in its directions; 0 if they are on different sides.
-  float spread(const Vec3& wo, const Vec3& wi) const {
+  float lobe_density(const Vec3& wo, const Vec3& wi) const {
     return wo.z * wi.z > 0 ? static_cast<float>(lobe_->density(dot(mirror(wo), wi))) : 0;
   }
 
   /// Normalisation after the cut, given the cosine of the mirrored direction.
-  float made_good(float cos_theta) const { return cut_at(cos_theta).made_good; }
+  float normalisation(float cos_theta) const { return cut_at(cos_theta).normalisation; }
 
   /// Density of `sample`, 1/sr.
-  float pdf(const Vec3& wo, const Vec3& wi) const { return spread(wo, wi) * made_good(wo.z); }
+  float pdf(const Vec3& wo, const Vec3& wi) const { return lobe_density(wo, wi) * normalisation(wo.z); }
 
   /// Draws a direction on wo's side.
   Vec3 sample(const Vec3& wo, Vec2 u, RandomStream& rng) const {
@@ -55,14 +55,14 @@ class SurfaceLobe {
   /// Terms that depend on the mirrored direction alone.
   struct Cut {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
-    float kept, made_good;
+    float kept, normalisation;
   };
 
   const Cut& cut_at(float cos_theta) const {
     if (cut_.cos_theta == cos_theta) return cut_;
     cut_.cos_theta = cos_theta;
     cut_.kept = static_cast<float>(lobe_->kept_share(std::abs(cos_theta)));
-    cut_.made_good = 1 / cut_.kept;
+    cut_.normalisation = 1 / cut_.kept;
     return cut_;
   }
 

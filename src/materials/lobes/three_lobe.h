@@ -37,7 +37,7 @@ class ThreeLobeBsdf final : public Bsdf {
 
   Lobes flags() const override {
     const Lobes surface = Lobes::surface | (manner_.surface_direct ? Lobes::glossy : Lobes::glossy | Lobes::specular);
-    return Lobes::reflection | Lobes::transmission | Lobes::diffuse | surface | way_round();
+    return Lobes::reflection | Lobes::transmission | Lobes::diffuse | surface | incident_flag();
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
@@ -57,7 +57,7 @@ class ThreeLobeBsdf final : public Bsdf {
     if (reflects) return reflected(wo, wi, Lobes::reflection | Lobes::diffuse);
     const float density = choice.transmitted * std::abs(wi.z) * kInvPi;
     if (density == 0) return {};  // black
-    return made(leaf_f(wo, wi, 0), wi, density, Lobes::transmission | Lobes::diffuse);
+    return make_sample(leaf_f(wo, wi, 0), wi, density, Lobes::transmission | Lobes::diffuse);
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -94,7 +94,7 @@ class ThreeLobeBsdf final : public Bsdf {
 
   bool from_light() const { return manner_.incident == Incident::light; }
   bool is_reciprocal() const { return manner_.incident == Incident::reciprocal; }
-  Lobes way_round() const { return from_light() ? Lobes::from_light : Lobes::none; }
+  Lobes incident_flag() const { return from_light() ? Lobes::from_light : Lobes::none; }
 
   /// Cached, since f, pdf and sample are called in turn for one direction.
   const leaf::SampledShares& shares_at(float cos_theta) const {
@@ -134,7 +134,9 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   /// Value of the surface lobe; 0 if `f` omits it.
-  float spread(const Vec3& wo, const Vec3& wi) const { return manner_.surface_direct ? surface_.spread(wo, wi) : 0; }
+  float lobe_density(const Vec3& wo, const Vec3& wi) const {
+    return manner_.surface_direct ? surface_.lobe_density(wo, wi) : 0;
+  }
 
   Mutual mutual_at(float cos_theta) const {
     Mutual m{cos_theta, (*hit_.table)(cos_theta, *hit_.selection),
@@ -163,7 +165,7 @@ class ThreeLobeBsdf final : public Bsdf {
     if (!same_side(wo, wi)) return shares.transmitted * kInvPi;
     const SampledSpectrum subsurface = shares.subsurface * kInvPi;
     if (lobe == 0) return subsurface;
-    return subsurface + shares.surface * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
+    return subsurface + shares.surface * (lobe * surface_.normalisation(incident.z) / std::abs(leaving.z));
   }
 
   float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {
@@ -171,17 +173,17 @@ class ThreeLobeBsdf final : public Bsdf {
     const float cosine = std::abs(wi.z) * kInvPi;
     if (!same_side(wo, wi)) return choice.transmitted * cosine;
     const float subsurface = choice.subsurface * cosine;
-    return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.made_good(wo.z);
+    return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.normalisation(wo.z);
   }
 
   /// Completes a sample on wo's side; nothing if f is black.
   std::optional<BsdfSample> reflected(const Vec3& wo, Vec3 wi, Lobes from) const {
-    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
-    return density == 0 ? std::nullopt : made(leaf_f(wo, wi, lobe), wi, density, from);
+    const float lobe = lobe_density(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    return density == 0 ? std::nullopt : make_sample(leaf_f(wo, wi, lobe), wi, density, from);
   }
 
   /// Constructed in place: a copy would wait for the stores of its parts.
-  static std::optional<BsdfSample> made(const SampledSpectrum& f, Vec3 wi, float density, Lobes from) {
+  static std::optional<BsdfSample> make_sample(const SampledSpectrum& f, Vec3 wi, float density, Lobes from) {
     std::optional<BsdfSample> result;
     BsdfSample& sample = result.emplace();
     sample.f = f;
@@ -200,10 +202,10 @@ class ThreeLobeBsdf final : public Bsdf {
 
   /// f of the surface lobe if wi, drawn from it, is treated as the only direction of a delta lobe.
   SampledSpectrum as_delta(const Vec3& wo, const Vec3& wi) const {
-    const float drawn = surface_.made_good(wo.z);
+    const float drawn = surface_.normalisation(wo.z);
     if (is_reciprocal()) return mutual_of(wo).factors.surface * mutual_at(wi.z).factors.surface * (1 / drawn);
     if (!from_light()) return shares_at(wo.z).surface * (1 / std::abs(wi.z));
-    return shares_at(wi.z).surface * (surface_.made_good(wi.z) / (drawn * std::abs(wo.z)));
+    return shares_at(wi.z).surface * (surface_.normalisation(wi.z) / (drawn * std::abs(wo.z)));
   }
 
   LeafHit hit_;

@@ -39,9 +39,9 @@ class TrowbridgeReitz {
     return std::sqrt(w.z * w.z + x * x + y * y);
   }
   /// G2 / (4 cos theta_a cos theta_b): share of facets visible from both.
-  float seen_from_both(const Vec3& a, const Vec3& b) const { return 0.5f / (a.z * stretch(b) + b.z * stretch(a)); }
+  float smith_visibility(const Vec3& a, const Vec3& b) const { return 0.5f / (a.z * stretch(b) + b.z * stretch(a)); }
   /// Density of `sample_visible`, divided by `density` and |dot(w, m)|.
-  float visibility(const Vec3& w) const { return 2 / (w.z + stretch(w)); }
+  float g1_over_cosine(const Vec3& w) const { return 2 / (w.z + stretch(w)); }
 
   /// Draws a normal in proportion to its facets' visibility from `w` (Heitz 2018), by spherical caps (Dupuy and Benyoub
   /// 2023).

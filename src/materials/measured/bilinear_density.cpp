@@ -17,7 +17,7 @@ float invert_linear(float a, float b, float area) {
 
 /// Largest i in [0, count - 2] with at(i) <= x.
 template <class At>
-uint32_t last_not_above(uint32_t count, float x, const At& at) {
+uint32_t find_interval(uint32_t count, float x, const At& at) {
   uint32_t low = 0, high = count - 1;
   while (high - low > 1) {
     const uint32_t middle = (low + high) / 2;
@@ -65,7 +65,7 @@ BilinearDensity::BilinearDensity(std::vector<float> values, size_t width, size_t
   const size_t size = width * height, slices = values_.size() / size;
   left_.resize(values_.size());
   bottom_.resize(slices * height);
-  std::vector<double> row(width), below(height);
+  std::vector<double> row(width), cumulative(height);
   for (size_t s = 0; s < slices; ++s) {
     float* const v = values_.data() + s * size;
     double before = 0;
@@ -90,20 +90,20 @@ BilinearDensity::BilinearDensity(std::vector<float> values, size_t width, size_t
   }
 }
 
-float BilinearDensity::below(const SliceMix& mix, uint32_t y) const {
+float BilinearDensity::cumulative(const SliceMix& mix, uint32_t y) const {
   float total = 0;
   for (uint32_t i = 0; i < mix.count; ++i) total += mix.weight[i] * bottom_[size_t(mix.slice[i]) * height_ + y];
   return total;
 }
 
 BilinearDensity::Mapped BilinearDensity::sample(const SliceMix& mix, Vec2 u) const {
-  const float in_y = u.y * below(mix, height_ - 1);
-  const uint32_t y = last_not_above(height_, in_y, [&](uint32_t i) { return below(mix, i); });
+  const float in_y = u.y * cumulative(mix, height_ - 1);
+  const uint32_t y = find_interval(height_, in_y, [&](uint32_t i) { return cumulative(mix, i); });
   const float ty =
-      invert_linear(sum(left_, mix, width_ - 1, y), sum(left_, mix, width_ - 1, y + 1), in_y - below(mix, y));
+      invert_linear(sum(left_, mix, width_ - 1, y), sum(left_, mix, width_ - 1, y + 1), in_y - cumulative(mix, y));
   const auto left = [&](uint32_t i) { return lerp(sum(left_, mix, i, y), sum(left_, mix, i, y + 1), ty); };
   const float in_x = u.x * left(width_ - 1);
-  const uint32_t x = last_not_above(width_, in_x, left);
+  const uint32_t x = find_interval(width_, in_x, left);
   const auto value = [&](uint32_t i) { return lerp(sum(values_, mix, i, y), sum(values_, mix, i, y + 1), ty); };
   const float cells = static_cast<float>(width_ - 1) * static_cast<float>(height_ - 1);
   const float a = value(x), b = value(x + 1), tx = invert_linear(a / cells, b / cells, in_x - left(x));
@@ -117,10 +117,10 @@ BilinearDensity::Mapped BilinearDensity::invert(const SliceMix& mix, Vec2 p) con
   const float cells = static_cast<float>(width_ - 1) * static_cast<float>(height_ - 1);
   const auto value = [&](uint32_t i) { return lerp(sum(values_, mix, i, c.y), sum(values_, mix, i, c.y + 1), c.t.y); };
   const auto left = [&](uint32_t i) { return lerp(sum(left_, mix, i, c.y), sum(left_, mix, i, c.y + 1), c.t.y); };
-  const float a = value(c.x), b = value(c.x + 1), row = left(width_ - 1), all = below(mix, height_ - 1);
+  const float a = value(c.x), b = value(c.x + 1), row = left(width_ - 1), all = cumulative(mix, height_ - 1);
   const float r0 = sum(left_, mix, width_ - 1, c.y), r1 = sum(left_, mix, width_ - 1, c.y + 1);
   const float in_x = left(c.x) + c.t.x * (a + 0.5f * c.t.x * (b - a)) / cells;
-  const float in_y = below(mix, c.y) + c.t.y * (r0 + 0.5f * c.t.y * (r1 - r0));
+  const float in_y = cumulative(mix, c.y) + c.t.y * (r0 + 0.5f * c.t.y * (r1 - r0));
   return {{row > 0 ? in_x / row : 0, all > 0 ? in_y / all : 0}, lerp(a, b, c.t.x)};
 }
 

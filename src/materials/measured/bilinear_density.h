@@ -68,7 +68,7 @@ class BilinearDensity : public BilinearStack {
 
  private:
   /// Integral of the density over all cells below row y.
-  float below(const SliceMix& mix, uint32_t y) const;
+  float cumulative(const SliceMix& mix, uint32_t y) const;
 
   std::vector<float> left_;    ///< [slice][y][x]: integral along the row from its start to the node x, in cells
   std::vector<float> bottom_;  ///< [slice][y]: integral over the rows below

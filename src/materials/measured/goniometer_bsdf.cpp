@@ -9,7 +9,7 @@ namespace frond {
 namespace {
 
 /// Angle from the nearer pole.
-float polar(const Vec3& w) { return std::atan2(std::hypot(w.x, w.y), std::abs(w.z)); }
+float polar_angle(const Vec3& w) { return std::atan2(std::hypot(w.x, w.y), std::abs(w.z)); }
 
 /// Direction of the azimuth of wo; that of x at the pole.
 Vec2 azimuth(const Vec3& wo) {
@@ -24,7 +24,7 @@ struct Slices {
   size_t count;
 
   Slices(const GoniometerFace& face, const Vec3& wo) {
-    const auto [below, t] = cell_of(face.incidence, polar(wo));
+    const auto [below, t] = cell_of(face.incidence, polar_angle(wo));
     slice = {below, below + 1};
     weight = {1 - t, t};
     count = t > 0 ? 2 : 1;
@@ -39,7 +39,7 @@ struct Slices {
 
 DirectionGrid::Place place(const DirectionGrid& grid, const Vec3& wo, const Vec3& wi) {
   const Vec2 a = azimuth(wo);
-  return grid.place(polar(wi), std::atan2(a.x * wi.y - a.y * wi.x, a.x * wi.x + a.y * wi.y));
+  return grid.place(polar_angle(wi), std::atan2(a.x * wi.y - a.y * wi.x, a.x * wi.x + a.y * wi.y));
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ SampledSpectrum GoniometerBsdf::f(const Vec3& wo, const Vec3& wi, RandomStream&)
   if (wo.z * wi.z == 0 || grid(wo, wi).empty()) return {};
   const DirectionGrid& g = grid(wo, wi);
   const DirectionGrid::Place at = place(g, wo, wi);
-  const Slices slices(lit(wo), wo);
+  const Slices slices(lit_face(wo), wo);
   SampledSpectrum sum;
   for (size_t k = 0; k < slices.count; ++k) sum += g.value(slices.slice[k], at, lanes_) * slices.weight[k];
   return sum * mask_;
@@ -71,8 +71,8 @@ float GoniometerBsdf::pdf(const Vec3& wo, const Vec3& wi) const {
   if (wo.z * wi.z == 0 || grid(wo, wi).empty()) return 0;
   const DirectionGrid& g = grid(wo, wi);
   const DirectionGrid::Place at = place(g, wo, wi);
-  const Slices slices(lit(wo), wo);
-  const auto r = slices.totals(lit(wo).reflected), t = slices.totals(lit(wo).transmitted);
+  const Slices slices(lit_face(wo), wo);
+  const auto r = slices.totals(lit_face(wo).reflected), t = slices.totals(lit_face(wo).transmitted);
   const float total = r[0] + r[1] + t[0] + t[1];
   float density = 0;
   for (size_t k = 0; k < slices.count; ++k) density += slices.weight[k] * g.density(slices.slice[k], at);
@@ -81,7 +81,7 @@ float GoniometerBsdf::pdf(const Vec3& wo, const Vec3& wi) const {
 
 std::optional<BsdfSample> GoniometerBsdf::sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const {
   if (wo.z == 0) return {};
-  const GoniometerFace& face = lit(wo);
+  const GoniometerFace& face = lit_face(wo);
   const Slices slices(face, wo);
   const auto r = slices.totals(face.reflected), t = slices.totals(face.transmitted);
   // One number chooses the hemisphere and the incidence, and then samples it.

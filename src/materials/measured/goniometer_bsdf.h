@@ -27,9 +27,9 @@ class GoniometerBsdf final : public Bsdf {
   float pdf(const Vec3& wo, const Vec3& wi) const override;
 
  private:
-  const GoniometerFace& lit(const Vec3& wo) const { return faces_[wo.z < 0 ? 1 : 0]; }
+  const GoniometerFace& lit_face(const Vec3& wo) const { return faces_[wo.z < 0 ? 1 : 0]; }
   const DirectionGrid& grid(const Vec3& wo, const Vec3& wi) const {
-    return same_side(wo, wi) ? lit(wo).reflected : lit(wo).transmitted;
+    return same_side(wo, wi) ? lit_face(wo).reflected : lit_face(wo).transmitted;
   }
 
   const std::array<GoniometerFace, 2>& faces_;

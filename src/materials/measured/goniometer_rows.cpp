@@ -52,7 +52,7 @@ class Header {
         fail(table_.where(at_[a.column]), "{} is {}, outside its range {} to {}", kNames[a.column], values[a.column],
              a.range.min, a.range.max);
     if (values[kTheta] == 90) fail(table_.where(at_[kTheta]), "theta_deg is 90, on neither side; remove the row");
-    GoniometerRow row{values[kIncidence], values[kWavelength], values[kTheta], turned(values[kPhi]),
+    GoniometerRow row{values[kIncidence], values[kWavelength], values[kTheta], wrapped_azimuth(values[kPhi]),
                       values[kF],         values[kError],      values[kPatch], table_.where()};
     check_kind(row);
     check_material();
@@ -70,7 +70,7 @@ class Header {
     return *value;
   }
   /// Into [0, 360).
-  static double turned(double phi_deg) {
+  static double wrapped_azimuth(double phi_deg) {
     const double turned = std::fmod(phi_deg, 360);
     return turned < 0 ? std::fmod(turned + 360, 360) : turned;
   }

@@ -53,25 +53,25 @@ class TensorBsdf final : public Bsdf {
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
     if (!same_side(wo, wi)) return {};
-    const Vec3 above = up(wo, wo);
-    return f(data_.outgoing(above), above, up(wo, wi)).f;
+    const Vec3 above = to_upper_side(wo, wo);
+    return f(data_.outgoing(above), above, to_upper_side(wo, wi)).f;
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
     if (!same_side(wo, wi)) return 0;
-    const Vec3 above = up(wo, wo);
-    return data_.at(data_.outgoing(above), above, up(wo, wi)).pdf;
+    const Vec3 above = to_upper_side(wo, wo);
+    return data_.at(data_.outgoing(above), above, to_upper_side(wo, wi)).pdf;
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream&) const override {
     if (wo.z == 0) return {};
-    const Vec3 above = up(wo, wo);
+    const Vec3 above = to_upper_side(wo, wo);
     const TensorBrdf::Outgoing out = data_.outgoing(above);
     const Vec3 wi = data_.sample(out, above, u);
     if (!(wi.z > 0)) return {};
     const auto [value, density] = f(out, above, wi);
     if (!(density > 0)) return {};
-    return BsdfSample{value, up(wo, wi), density, flags()};
+    return BsdfSample{value, to_upper_side(wo, wi), density, flags()};
   }
 
  private:
@@ -80,7 +80,7 @@ class TensorBsdf final : public Bsdf {
     float pdf;
   };
   /// Turns directions seen from below the surface upwards, and back.
-  static Vec3 up(const Vec3& wo, const Vec3& w) { return wo.z < 0 ? -w : w; }
+  static Vec3 to_upper_side(const Vec3& wo, const Vec3& w) { return wo.z < 0 ? -w : w; }
   Values f(const TensorBrdf::Outgoing& out, const Vec3& wo, const Vec3& wi) const {
     const TensorBrdf::At at = data_.at(out, wo, wi);
     return {data_.spectrum(out.mix, at.u, cells_) * mask_ * at.per_unit, at.pdf};
