@@ -57,7 +57,8 @@ class FitTable {
     if (!node) {
       const auto share = [](size_t at) { return double(at * at) / double((kNodes - 1) * (kNodes - 1)); };
       Triple rgb{};
-      rgb[largest] = 0.5, rgb[(largest + 1) % 3] = share(i) / 2, rgb[(largest + 2) % 3] = share(j) / 2;
+      rgb[largest] = 0.5, rgb[(largest + 1) % 3] = texel_spectrum(i) / 2,
+      rgb[(largest + 2) % 3] = texel_spectrum(j) / 2;
       node = fit_reflectance(space_, rgb).reflectance.coefficients();
     }
     return *node;
@@ -80,7 +81,7 @@ class ColorNumbers {
     bool is_new;
   };
   /// Returns the number of the texel's colour, by linear probing.
-  Number of(uint32_t texel) {
+  Number number_of(uint32_t texel) {
     const Rgb c = rgb_at(image_, texel);
     size_t slot = hash(c) & (slots_.size() - 1);
     for (; slots_[slot] != kFree; slot = (slot + 1) & (slots_.size() - 1))
@@ -142,7 +143,7 @@ LightImage::LightImage(const ColorImage& file)
   for (uint32_t i = 0; i < luminances_.size(); ++i) {
     poll();
     const Rgb c = rgb_at(file.image, i);
-    const auto [number, is_new] = numbers.of(i);
+    const auto [number, is_new] = numbers.number_of(i);
     texels_.push_back(number);
     if (!is_new) continue;
     // Scaling by twice the brightest channel keeps the reflectance away from 0 and 1.
@@ -170,7 +171,7 @@ size_t LightImage::texel(int x, int y) const {
   return size_t(std::clamp(y, 0, height_ - 1)) * size_t(width_) + size_t(std::clamp(x, 0, width_ - 1));
 }
 
-SampledSpectrum LightImage::share(size_t texel, const SampledWavelengths& lambda) const {
+SampledSpectrum LightImage::texel_spectrum(size_t texel, const SampledWavelengths& lambda) const {
   const Color& c = colors_[texels_[texel]];
   SampledSpectrum s;
   for (int i = 0; i < lambda.count; ++i) s[i] = c.scale * c.reflectance.at(lambda.nm[size_t(i)]);
@@ -180,7 +181,7 @@ SampledSpectrum LightImage::share(size_t texel, const SampledWavelengths& lambda
 /// (u, v) is clamped to the unit square.
 SampledSpectrum LightImage::nearest(Vec2 uv, const SampledWavelengths& lambda) const {
   const auto cell = [](float t, int size) { return int(std::clamp(t, 0.f, 1.f) * float(size)); };
-  return white_->sample(lambda) * share(texel(cell(uv.x, width_), cell(uv.y, height_)), lambda);
+  return white_->sample(lambda) * texel_spectrum(texel(cell(uv.x, width_), cell(uv.y, height_)), lambda);
 }
 
 /// Texel centres are at half-integer positions.
@@ -189,9 +190,10 @@ SampledSpectrum LightImage::bilinear(Vec2 uv, const SampledWavelengths& lambda) 
   const float y = std::clamp(uv.y, 0.f, 1.f) * float(height_) - 0.5f;
   const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
   const int i = int(x0), j = int(y0);
-  return white_->sample(lambda) *
-         (share(texel(i, j), lambda) * ((1 - fx) * (1 - fy)) + share(texel(i + 1, j), lambda) * (fx * (1 - fy)) +
-          share(texel(i, j + 1), lambda) * ((1 - fx) * fy) + share(texel(i + 1, j + 1), lambda) * (fx * fy));
+  return white_->sample(lambda) * (texel_spectrum(texel(i, j), lambda) * ((1 - fx) * (1 - fy)) +
+                                   texel_spectrum(texel(i + 1, j), lambda) * (fx * (1 - fy)) +
+                                   texel_spectrum(texel(i, j + 1), lambda) * ((1 - fx) * fy) +
+                                   texel_spectrum(texel(i + 1, j + 1), lambda) * (fx * fy));
 }
 
 }  // namespace frond

@@ -48,7 +48,7 @@ class LightImage {
 
   size_t texel(int x, int y) const;
   /// Returns the texel's emission relative to white.
-  SampledSpectrum share(size_t texel, const SampledWavelengths& lambda) const;
+  SampledSpectrum texel_spectrum(size_t texel, const SampledWavelengths& lambda) const;
 
   int width_, height_;
   std::vector<uint32_t> texels_;  ///< indices in colors_

@@ -39,7 +39,7 @@ class Portal {
     float steradians;  ///< per unit area of the square
   };
   /// Returns the coordinates of a direction on the outer side; nullopt on the inner side.
-  std::optional<Vec2> square_of(const Vec3& w, float* steradians = nullptr) const {
+  std::optional<Vec2> to_square(const Vec3& w, float* steradians = nullptr) const {
     const Vec3 d = frame_.to_local(w);
     if (!(d.z > 0)) return {};
     if (steradians) *steradians = jacobian(d);
@@ -54,7 +54,7 @@ class Portal {
   }
   /// Returns the window visible from a point; nullopt behind the portal.
   std::optional<WindowedDistribution::Window> window_at(const Vec3& from) const {
-    const auto a = square_of(normalize_any(first_ - from)), b = square_of(normalize_any(opposite_ - from));
+    const auto a = to_square(normalize_any(first_ - from)), b = to_square(normalize_any(opposite_ - from));
     if (!a || !b) return {};
     return WindowedDistribution::Window{{std::min(a->x, b->x), std::min(a->y, b->y)},
                                         {std::max(a->x, b->x), std::max(a->y, b->y)}};
@@ -93,13 +93,13 @@ class PortalEnvironment final : public EnvironmentLight {
   }
   /// Returns 0 for directions that miss the portal.
   SampledSpectrum radiance(const Vec3& from, const Vec3& direction, const SampledWavelengths& lambda) const override {
-    const auto uv = portal_.square_of(direction);
+    const auto uv = portal_.to_square(direction);
     const auto window = uv ? portal_.window_at(from) : std::nullopt;
     return window && window->contains(*uv) ? at(*uv, lambda) : SampledSpectrum();
   }
   float pdf(const Vec3& from, const Vec3& direction) const override {
     float steradians = 0;
-    const auto uv = portal_.square_of(direction, &steradians);
+    const auto uv = portal_.to_square(direction, &steradians);
     const auto window = uv ? portal_.window_at(from) : std::nullopt;
     const float density = window ? directions_.pdf(*uv, *window) / steradians : 0;
     return density > 0 && std::isfinite(density) ? density : 0;

@@ -51,7 +51,7 @@ SampledGrid<float> grid_of(const Params& p, std::string_view name) {
   const std::vector<double> values = p.reals(name);
   return {{values.begin(), values.end()}, n};
 }
-std::optional<SampledGrid<float>> given_grid(const Params& p, std::string_view name) {
+std::optional<SampledGrid<float>> optional_grid(const Params& p, std::string_view name) {
   return p.given(name) ? std::optional(grid_of(p, name)) : std::nullopt;
 }
 
@@ -65,11 +65,11 @@ class UniformGrid final : public Medium {
         phase_(Phase::henyey_greenstein(float(p.real("g")))),
         density_(grid_of(p, "density")),
         emission_scale_(p.given("Lescale") ? grid_of(p, "Lescale") : SampledGrid<float>({1.f}, {1, 1, 1})),
-        temperatures_(given_grid(p, "temperature")),
+        temperatures_(optional_grid(p, "temperature")),
         temperature_(p),
         emission_(p.given("Le") ? p.spectrum("Le") : nullptr) {
     if (emission_ && temperatures_) fail(p.where("Le"), "\"Le\" and \"temperature\" exclude each other");
-    density_.bound(majorants_, [](float v) { return v; });
+    density_.fill_majorants(majorants_, [](float v) { return v; });
   }
 
   MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
@@ -145,8 +145,8 @@ class ColorGrid {
       return s;
     });
   }
-  void bound(MajorantGrid& majorants) const {
-    grid_.bound(majorants, [](const Color& c) { return c.scale * c.reflectance.max_value(); });
+  void fill_majorants(MajorantGrid& majorants) const {
+    grid_.fill_majorants(majorants, [](const Color& c) { return c.scale * c.reflectance.max_value(); });
   }
 
  private:
@@ -196,7 +196,7 @@ class ColorGrid {
   SampledGrid<Color> grid_;
 };
 
-std::optional<ColorGrid> given_colors(const Params& p, std::string_view name) {
+std::optional<ColorGrid> optional_colors(const Params& p, std::string_view name) {
   return p.given(name) ? std::optional<ColorGrid>(std::in_place, p, name) : std::nullopt;
 }
 
@@ -210,9 +210,9 @@ class RgbGrid final : public Medium {
         scale_(float(p.real("scale"))),
         // pbrt-v4 does not divide this emission by the integral of ybar.
         emission_scale_(float(p.real("Lescale") * photometric(ConstantSpectrum(1, kCieRange_nm)))),
-        sigma_a_(given_colors(p, "sigma_a")),
-        sigma_s_(given_colors(p, "sigma_s")),
-        emission_(given_colors(p, "Le")),
+        sigma_a_(optional_colors(p, "sigma_a")),
+        sigma_s_(optional_colors(p, "sigma_s")),
+        emission_(optional_colors(p, "Le")),
         white_(unit_d65()) {
     if (!sigma_a_ && !sigma_s_) fail(p.where(), "medium \"rgbgrid\" needs \"rgb sigma_a\" or \"rgb sigma_s\"");
     if (emission_ && !sigma_a_) fail(p.where("Le"), "\"Le\" needs \"rgb sigma_a\": the medium emits sigma_a Le");

@@ -90,7 +90,7 @@ class NodeCheck {
   void check() const {
     const auto& grid = *reinterpret_cast<const nanovdb::GridData*>(memory_);
     if (size_ < sizeof(nanovdb::GridData) + sizeof(Tree) || (grid.mMagic != kOldMagic && grid.mMagic != kGridMagic))
-      damaged();
+      reject_damaged();
     file_.check_version(grid.mVersion);
     if (grid.mGridType != nanovdb::GridType::Float)
       file_.refuse("its grid does not hold 32-bit floats, which medium \"nanovdb\" takes");
@@ -106,7 +106,7 @@ class NodeCheck {
     for (uint64_t i = 0; i < lowers.count; ++i) check_node(lowers.begin[i], leaves);
     StopPoll poll;
     for (uint64_t i = 0; i < leaves.count; ++i, poll())
-      for (const float v : leaves.begin[i].data()->mValues) finite(v);
+      for (const float v : leaves.begin[i].data()->mValues) check_finite(v);
   }
 
  private:
@@ -127,13 +127,13 @@ class NodeCheck {
     }
   };
 
-  [[noreturn]] void damaged() const { file_.refuse("it is damaged"); }
-  void finite(float v) const {
+  [[noreturn]] void reject_damaged() const { file_.refuse("it is damaged"); }
+  void check_finite(float v) const {
     if (!std::isfinite(v)) file_.refuse("it holds a number that is not finite");
   }
   void check_map(const nanovdb::Map& map) const {
     constexpr float kRounding = 1e-2f;
-    for (const float v : map.mVecF) finite(v);
+    for (const float v : map.mVecF) check_finite(v);
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 3; ++column) {
         float sum = 0;
@@ -144,7 +144,7 @@ class NodeCheck {
   /// Address at an offset from the tree; throws if `size` bytes do not fit there.
   const std::byte* at(uint64_t offset, uint64_t size) const {
     const uint64_t room = size_ - sizeof(nanovdb::GridData);
-    if (offset > room || size > room - offset || offset % NANOVDB_DATA_ALIGNMENT != 0) damaged();
+    if (offset > room || size > room - offset || offset % NANOVDB_DATA_ALIGNMENT != 0) reject_damaged();
     return memory_ + sizeof(nanovdb::GridData) + offset;
   }
   template <class Node>
@@ -158,13 +158,13 @@ class NodeCheck {
     using Data = Root::DataType;
     const auto& root = *reinterpret_cast<const Data*>(at(tree.mNodeOffset[3], sizeof(Data)));
     (void)at(tree.mNodeOffset[3], sizeof(Data) + root.mTableSize * uint64_t{sizeof(Data::Tile)});
-    finite(root.mBackground);
+    check_finite(root.mBackground);
     for (uint32_t i = 0; i < root.mTableSize; ++i) {
       const Data::Tile& tile = *root.tile(i);
       if (tile.child == 0)
-        finite(tile.value);
+        check_finite(tile.value);
       else if (!uppers.take(moved(&root, tile.child)))
-        damaged();
+        reject_damaged();
     }
   }
   template <class Node, class Child>
@@ -174,7 +174,7 @@ class NodeCheck {
       if (!data.mChildMask.isOn(i))
         finite(data.mTable[i].value);
       else if (!children.take(moved(&data, data.mTable[i].child)))
-        damaged();
+        reject_damaged();
     }
   }
   /// Address `offset` bytes from a node; nullptr if it is outside of the memory.

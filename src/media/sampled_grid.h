@@ -37,7 +37,7 @@ class SampledGrid {
 
   /// Raises the majorants of the cells in which the value `density(value)` has an effect.
   template <class Density>
-  void bound(MajorantGrid& majorants, const Density& density) const {
+  void fill_majorants(MajorantGrid& majorants, const Density& density) const {
     StopPoll poll;
     for (int z = 0; z < n_[2]; ++z)
       for (int y = 0; y < n_[1]; ++y)
