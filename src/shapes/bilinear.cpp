@@ -112,13 +112,13 @@ class BilinearMesh final : public AnalyticShape {
     return sum / (kCells * kCells);
   }
 
-  Vec2 uv(unsigned i, Vec2 at) const override { return between(texture_of(i), at); }
+  Vec2 uv(unsigned i, Vec2 at) const override { return interpolate(texture_of(i), at); }
 
   /// Interpolates the corners' normals; not normalized.
   Vec3 shading_normal(unsigned i, Vec2 at) const override {
     std::array<Vec3, 4> n;
     for (size_t k = 0; k < 4; ++k) n[k] = mesh_.n[mesh_.patches[i][k]];
-    return between(n, at);
+    return interpolate(n, at);
   }
 
   /// Derivatives by the patch's parameters, converted to texture coordinates by the inverse Jacobian.
@@ -141,7 +141,7 @@ class BilinearMesh final : public AnalyticShape {
 
  private:
   template <class T>
-  static T between(const std::array<T, 4>& q, Vec2 at) {
+  static T interpolate(const std::array<T, 4>& q, Vec2 at) {
     return (q[0] * (1 - at.x) + q[1] * at.x) * (1 - at.y) + (q[2] * (1 - at.x) + q[3] * at.x) * at.y;
   }
   /// Area elements at the corners, for sampling.

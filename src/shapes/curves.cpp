@@ -16,23 +16,23 @@ using Cubic = CubicT<float>;
 using Cubicd = CubicT<double>;
 
 template <class T>
-Vec3T<T> between(const Vec3T<T>& a, const Vec3T<T>& b, T t) {
+Vec3T<T> interpolate(const Vec3T<T>& a, const Vec3T<T>& b, T t) {
   return a * (1 - t) + b * t;
 }
 
 /// De Casteljau subdivision at t: the two halves have the points 0 1 2 3 and 3 4 5 6.
 std::array<Vec3d, 7> split(const Cubicd& c, double t) {
-  const Vec3d a = between(c[0], c[1], t), m = between(c[1], c[2], t), b = between(c[2], c[3], t);
-  const Vec3d l = between(a, m, t), r = between(m, b, t);
-  return {c[0], a, l, between(l, r, t), r, b, c[3]};
+  const Vec3d a = interpolate(c[0], c[1], t), m = interpolate(c[1], c[2], t), b = interpolate(c[2], c[3], t);
+  const Vec3d l = interpolate(a, m, t), r = interpolate(m, b, t);
+  return {c[0], a, l, interpolate(l, r, t), r, b, c[3]};
 }
 Cubicd first_part(const std::array<Vec3d, 7>& s) { return {s[0], s[1], s[2], s[3]}; }
 Cubicd second_part(const std::array<Vec3d, 7>& s) { return {s[3], s[4], s[5], s[6]}; }
 
 /// Returns the tangent, scaled as the derivative by t.
 Vec3d derivative(const Cubicd& c, double t) {
-  const Vec3d a = between(c[0], c[1], t), m = between(c[1], c[2], t), b = between(c[2], c[3], t);
-  const Vec3d d = between(m, b, t) - between(a, m, t);
+  const Vec3d a = interpolate(c[0], c[1], t), m = interpolate(c[1], c[2], t), b = interpolate(c[2], c[3], t);
+  const Vec3d d = interpolate(m, b, t) - interpolate(a, m, t);
   // If control points coincide, the direction from end to end is used.
   return (dot(d, d) > 0 ? d : c[3] - c[0]) * 3.0;
 }
@@ -96,7 +96,7 @@ class Curves final : public AnalyticShape {
                   .least = double(t_min) * ray_length};
     Cubicd projected;
     for (size_t i = 0; i < 4; ++i) projected[i] = ray_space.to_local(piece.curve[i] - o);
-    search.look_at(projected, piece.u0, piece.u1, depth_for(projected));
+    search.search(projected, piece.u0, piece.u1, depth_for(projected));
     const float t = float(search.nearest / ray_length);
     if (!search.found || !(t > t_min && t < ray.t_max)) return {};
     const Vec3d n = normal_at(search.hit, ray_space, piece.segment);
@@ -204,16 +204,16 @@ class Curves final : public AnalyticShape {
     bool found = false;
     CurveHit hit{};
 
-    void look_at(const Cubicd& c, double u0, double u1, int depth) {
-      if (!near(c, std::max(curves.width(segment, u0), curves.width(segment, u1)) / 2)) return;
-      if (depth == 0) return meet(c, u0, u1);
+    void search(const Cubicd& c, double u0, double u1, int depth) {
+      if (!bounds_overlap(c, std::max(curves.width(segment, u0), curves.width(segment, u1)) / 2)) return;
+      if (depth == 0) return intersect_piece(c, u0, u1);
       const std::array<Vec3d, 7> halves = split(c, 0.5);
       const double middle = (u0 + u1) / 2;
-      look_at(first_part(halves), u0, middle, depth - 1);
-      look_at(second_part(halves), middle, u1, depth - 1);
+      search(first_part(halves), u0, middle, depth - 1);
+      search(second_part(halves), middle, u1, depth - 1);
     }
 
-    bool near(const Cubicd& c, double radius) const {
+    bool bounds_overlap(const Cubicd& c, double radius) const {
       const auto [x0, x1] = std::minmax({c[0].x, c[1].x, c[2].x, c[3].x});
       const auto [y0, y1] = std::minmax({c[0].y, c[1].y, c[2].y, c[3].y});
       const auto [z0, z1] = std::minmax({c[0].z, c[1].z, c[2].z, c[3].z});
@@ -222,7 +222,7 @@ class Curves final : public AnalyticShape {
     }
 
     /// Intersects an almost straight piece: between the perpendiculars at its ends, and within its width.
-    void meet(const Cubicd& c, double u0, double u1) {
+    void intersect_piece(const Cubicd& c, double u0, double u1) {
       const auto beyond = [](const Vec3d& end, const Vec3d& inner) {
         return -end.y * (inner.y - end.y) - end.x * (inner.x - end.x) < 0;
       };
@@ -275,8 +275,8 @@ class Curves final : public AnalyticShape {
 };
 
 /// Raises a quadratic Bezier curve to a cubic one, exactly.
-Cubic raised(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return {a, between(a, b, 2.f / 3), between(c, b, 2.f / 3), c};
+Cubic elevate_degree(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return {a, interpolate(a, b, 2.f / 3), interpolate(c, b, 2.f / 3), c};
 }
 
 /// Returns the Bezier curves of a chain with shared end points, or of a uniform B-spline.
@@ -285,11 +285,11 @@ std::vector<Cubic> segments_of(const std::vector<Vec3>& p, size_t degree, bool i
   for (size_t i = 0; i + degree < p.size(); i += is_spline ? 1 : degree) {
     const Vec3* const c = &p[i];
     if (degree == 2)
-      segments.push_back(is_spline ? raised((c[0] + c[1]) * 0.5f, c[1], (c[1] + c[2]) * 0.5f)
-                                   : raised(c[0], c[1], c[2]));
+      segments.push_back(is_spline ? elevate_degree((c[0] + c[1]) * 0.5f, c[1], (c[1] + c[2]) * 0.5f)
+                                   : elevate_degree(c[0], c[1], c[2]));
     else if (is_spline)
-      segments.push_back({(c[0] + c[1] * 4.f + c[2]) / 6.f, between(c[1], c[2], 1.f / 3), between(c[1], c[2], 2.f / 3),
-                          (c[1] + c[2] * 4.f + c[3]) / 6.f});
+      segments.push_back({(c[0] + c[1] * 4.f + c[2]) / 6.f, interpolate(c[1], c[2], 1.f / 3),
+                          interpolate(c[1], c[2], 2.f / 3), (c[1] + c[2] * 4.f + c[3]) / 6.f});
     else
       segments.push_back({c[0], c[1], c[2], c[3]});
   }

@@ -19,19 +19,19 @@ class Quadric : public AnalyticShape {
         phi_max_(p.real("phimax") * M_PI / 180) {}
 
   ShapePoint sample(unsigned, Vec2 u) const final {
-    const Sample s = sample_own(u);
+    const Sample s = sample_object(u);
     ShapePoint point = s.point;
     point.area = area_at(s.normal);
     return point;
   }
   double area(unsigned) const final {
-    if (AffineMap{to_scene_.rows()}.area_scale()) return own_area() * stretch({0, 0, 1});
+    if (AffineMap{to_scene_.rows()}.area_scale()) return object_area() * stretch({0, 0, 1});
     constexpr int kSteps = 128;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i)
       for (int j = 0; j < kSteps; ++j)
-        sum += stretch(sample_own({(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps}).normal);
-    return own_area() * sum / (kSteps * kSteps);
+        sum += stretch(sample_object({(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps}).normal);
+    return object_area() * sum / (kSteps * kSteps);
   }
 
  protected:
@@ -40,11 +40,11 @@ class Quadric : public AnalyticShape {
     ShapePoint point;
     Vec3d normal;
   };
-  virtual Sample sample_own(Vec2 u) const = 0;
+  virtual Sample sample_object(Vec2 u) const = 0;
   /// Returns the area in object space.
-  virtual double own_area() const = 0;
+  virtual double object_area() const = 0;
   /// Returns the area that the shape would have if it grew everywhere as at a point with this unit normal.
-  virtual double area_at(const Vec3d& n) const { return own_area() * stretch(n); }
+  virtual double area_at(const Vec3d& n) const { return object_area() * stretch(n); }
 
   /// Returns a unit normal.
   Vec3 to_scene_normal(const Vec3d& n) const {
@@ -75,7 +75,7 @@ class Quadric : public AnalyticShape {
     return bounds;
   }
   /// Compares as float, as a search that continues behind the hit does.
-  static bool within(double t, float t_min, const Ray& ray) { return float(t) > t_min && float(t) < ray.t_max; }
+  static bool is_in_range(double t, float t_min, const Ray& ray) { return float(t) > t_min && float(t) < ray.t_max; }
   /// Returns the azimuth in [0, 2 pi).
   static double azimuth(const Vec3d& p) {
     const double phi = std::atan2(p.y, p.x);
@@ -120,7 +120,7 @@ class Sphere final : public Quadric {
     if (discriminant < 0) return {};
     const double half = std::sqrt(discriminant / dd);
     for (const double t : {b - half, b + half}) {
-      if (!within(t, t_min, ray)) continue;
+      if (!is_in_range(t, t_min, ray)) continue;
       const Vec3d on_ray = o + d * t, p = on_ray * (radius_ / length(on_ray));
       const double phi = azimuth(p);
       if (p.z < z_min_ || p.z > z_max_ || phi > phi_max()) continue;
@@ -130,13 +130,13 @@ class Sphere final : public Quadric {
   }
 
   /// z is uniform, by Archimedes' theorem.
-  Sample sample_own(Vec2 u) const override {
+  Sample sample_object(Vec2 u) const override {
     const double z = z_min_ + double(u.x) * (z_max_ - z_min_), phi = double(u.y) * phi_max();
     const double r = std::sqrt(std::max(0.0, radius_ * radius_ - z * z));
     const Vec3d p{r * std::cos(phi), r * std::sin(phi), z};
     return {at(p, phi, 0), p / radius_};
   }
-  double own_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
+  double object_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
 
   /// As in pbrt-v4: u is the azimuth, v the polar angle.
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
@@ -182,7 +182,7 @@ class Disk final : public Quadric {
     const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
     if (d.z == 0) return {};
     const double t = (height_ - o.z) / d.z;
-    if (!within(t, t_min, ray)) return {};
+    if (!is_in_range(t, t_min, ray)) return {};
     const Vec3d p{o.x + t * d.x, o.y + t * d.y, height_};
     const double r = std::sqrt(p.x * p.x + p.y * p.y);  // hypot is slower; the product of floats cannot overflow
     if (r > radius_ || r < inner_) return {};
@@ -203,12 +203,12 @@ class Disk final : public Quadric {
   }
 
   /// The squared radius is uniform.
-  Sample sample_own(Vec2 u) const override {
+  Sample sample_object(Vec2 u) const override {
     const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
     const double phi = double(u.y) * phi_max();
     return {at({r * double(std::cos(float(phi))), r * double(std::sin(float(phi))), height_}, r, phi, 0), {0, 0, 1}};
   }
-  double own_area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_); }
+  double object_area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_); }
   double area_at(const Vec3d&) const override { return area_; }
 
   /// As in pbrt-v4, v decreases from the hole to the rim.
@@ -272,7 +272,7 @@ class Cylinder final : public Quadric {
     if (discriminant < 0) return {};
     const double half = std::sqrt(discriminant / dd);
     for (const double t : {b - half, b + half}) {
-      if (!within(t, t_min, ray)) continue;
+      if (!is_in_range(t, t_min, ray)) continue;
       Vec3d p = o + d * t;
       if (!(p.z >= z_min_ && p.z <= z_max_)) continue;
       const double phi = azimuth(p);
@@ -291,12 +291,12 @@ class Cylinder final : public Quadric {
   }
 
  private:
-  Sample sample_own(Vec2 u) const override {
+  Sample sample_object(Vec2 u) const override {
     const double z = z_min_ + double(u.x) * (z_max_ - z_min_), phi = double(u.y) * phi_max();
     const Vec3d n{std::cos(phi), std::sin(phi), 0};
     return {at({radius_ * n.x, radius_ * n.y, z}, phi, 0), n};
   }
-  double own_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
+  double object_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
 
   ShapePoint at(const Vec3d& p, double phi, float t) const {
     return {to_scene_point(p),

@@ -35,7 +35,7 @@ class ControlMesh {
     std::vector<Vec3d> p(p_.size());
     for (uint32_t v = 0; v < p_.size(); ++v) {
       poll();
-      p[v] = is_boundary(v) ? weighed_along(v, 1. / 8) : weighed_around(v, [](size_t n) { return beta(n); });
+      p[v] = is_boundary(v) ? weighted_boundary_sum(v, 1. / 8) : weighted_ring_sum(v, [](size_t n) { return beta(n); });
     }
     std::vector<uint32_t> middles(opposite_.size(), kNone);
     for (uint32_t e = 0; e < opposite_.size(); ++e) {
@@ -43,7 +43,7 @@ class ControlMesh {
       if (middles[e] != kNone) continue;
       middles[e] = uint32_t(p.size());
       if (opposite_[e] != kNone) middles[opposite_[e]] = middles[e];
-      p.push_back(middle_of(e));
+      p.push_back(edge_point(e));
     }
     Faces faces;
     faces.reserve(4 * faces_.size());
@@ -56,13 +56,13 @@ class ControlMesh {
   }
 
   /// Moves vertices to the limit surface, and computes their normals.
-  void put_on_limit(TriangleMesh& result) const {
+  void move_to_limit_surface(TriangleMesh& result) const {
     StopPoll poll;
     std::vector<Vec3d> limit(p_.size());
     for (uint32_t v = 0; v < p_.size(); ++v) {
       poll();
-      limit[v] = is_boundary(v) ? weighed_along(v, 1. / 5)
-                                : weighed_around(v, [](size_t n) { return 1 / (double(n) + 3 / (8 * beta(n))); });
+      limit[v] = is_boundary(v) ? weighted_boundary_sum(v, 1. / 5)
+                                : weighted_ring_sum(v, [](size_t n) { return 1 / (double(n) + 3 / (8 * beta(n))); });
     }
     for (uint32_t v = 0; v < p_.size(); ++v) {
       poll();
@@ -169,7 +169,7 @@ class ControlMesh {
   }
 
   template <class Weight>
-  Vec3d weighed_around(uint32_t v, const Weight& weight) const {
+  Vec3d weighted_ring_sum(uint32_t v, const Weight& weight) const {
     const std::vector<uint32_t> around = ring(v);
     if (around.empty()) return p_[v];
     const double w = weight(around.size());
@@ -178,19 +178,19 @@ class ControlMesh {
     return sum;
   }
   /// Boundary rule: weights the two neighbours along the boundary.
-  Vec3d weighed_along(uint32_t v, double weight) const {
+  Vec3d weighted_boundary_sum(uint32_t v, double weight) const {
     const std::vector<uint32_t> around = ring(v);
     return p_[v] * (1 - 2 * weight) + (p_[around.front()] + p_[around.back()]) * weight;
   }
   /// Position of the new vertex on an edge; on the boundary, its midpoint.
-  Vec3d middle_of(uint32_t e) const {
+  Vec3d edge_point(uint32_t e) const {
     const Vec3d &a = p_[start_of(e)], &b = p_[end_of(e)];
     if (opposite_[e] == kNone) return (a + b) * 0.5;
     return (a + b) * (3. / 8) + (p_[start_of(previous(e))] + p_[start_of(previous(opposite_[e]))]) * (1. / 8);
   }
 
   /// Returns the weight of neighbour i of n in the inward tangent of a boundary vertex.
-  static double inward_pull(size_t i, size_t n) {
+  static double tangent_weight(size_t i, size_t n) {
     static constexpr double kOfFew[3][4] = {{1, 1}, {0, 1, 0}, {-1, 2, 2, -1}};
     if (n <= 4) return kOfFew[n - 2][i];
     const double angle = std::numbers::pi / double(n - 1);
@@ -207,7 +207,7 @@ class ControlMesh {
       const Vec3d way = limit[around[i]] - limit[v];
       const double turn = 2 * std::numbers::pi * double(i) / double(n);
       a += way * (is_boundary(v) ? (i == n - 1 ? 1. : i == 0 ? -1. : 0.) : std::sin(turn));
-      b += way * (is_boundary(v) ? inward_pull(i, n) : std::cos(turn));
+      b += way * (is_boundary(v) ? tangent_weight(i, n) : std::cos(turn));
     }
     return cross(a, b);
   }
@@ -238,7 +238,7 @@ std::string subdivide(const std::vector<Vec3>& cage, const std::vector<std::arra
   ControlMesh mesh(std::move(p), std::move(used));
   if (!mesh.problem().empty()) return mesh.problem();
   for (int level = 0; level < levels; ++level) mesh = mesh.refined();
-  mesh.put_on_limit(result);
+  mesh.move_to_limit_surface(result);
   return "";
 }
 

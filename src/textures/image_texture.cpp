@@ -131,7 +131,7 @@ struct LoadedImage {
   explicit LoadedImage(MipMap m, bool is_red = false) : map(std::move(m)), is_red_alone(is_red) {
     const int channels = map.channels();
     StopPoll poll;
-    map.each([&](Float4 v) {
+    map.for_each_texel([&](Float4 v) {
       poll();
       for (int c = 0; c < channels; ++c)
         values = {std::min(values.min, double(v[c])), std::max(values.max, double(v[c]))};
@@ -185,8 +185,8 @@ LoadedImage load_colors(const Params& p, std::optional<ColorEncoding> known) {
 
 /// Loads once for all textures of a scene with equal parameters.
 template <class Load>
-std::shared_ptr<const LoadedImage> loaded(const Params& p, SharedWork* shared, std::string_view what,
-                                          const Load& load) {
+std::shared_ptr<const LoadedImage> load_shared(const Params& p, SharedWork* shared, std::string_view what,
+                                               const Load& load) {
   const std::filesystem::path path = p.file("filename");
   const auto encoding = known_encoding(p, path);
   const MipMap::Options o = options_of(p);
@@ -201,7 +201,7 @@ std::shared_ptr<const LoadedImage> loaded(const Params& p, SharedWork* shared, s
 class ImageFloat final : public FloatTexture {
  public:
   ImageFloat(const Params& p, const TexturePlacement& placement)
-      : mapping_(p, placement), scaling_(p), image_(loaded(p, placement.shared, "of numbers", load_numbers)) {
+      : mapping_(p, placement), scaling_(p), image_(load_shared(p, placement.shared, "of numbers", load_numbers)) {
     if (image_->is_red_alone)
       p.warn("filter", fmt::format("filter \"{}\" takes the red channel of this image, as pbrt-v4 does; bilinear and "
                                    "trilinear take alpha, or the mean where there is none",
@@ -234,7 +234,7 @@ class ImageSpectrum final : public SpectrumTexture {
   ImageSpectrum(const Params& p, const TexturePlacement& placement)
       : mapping_(p, placement),
         scaling_(p),
-        image_(loaded(p, placement.shared, "of colours", load_colors)),
+        image_(load_shared(p, placement.shared, "of colours", load_colors)),
         table_(ReflectanceTable::srgb()) {
     const Interval values = scaling_(image_->values);
     if (!std::isfinite(values.min) || !std::isfinite(values.max)) refuse_scale(p);
@@ -251,7 +251,7 @@ class ImageSpectrum final : public SpectrumTexture {
   float max_value() const override {
     std::call_once(max_found_, [this] {
       Float4 last{-1, 0, 0, 0};
-      image_->map.each([&](Float4 v) {
+      image_->map.for_each_texel([&](Float4 v) {
         if (are_equal(v, last)) return;
         last = v;
         const Float4 c = color(v);

@@ -37,7 +37,7 @@ std::vector<Share> shares(int from, int to) {
   return all;
 }
 
-float larger_part(Vec2 v) { return std::max(std::abs(v.x), std::abs(v.y)); }
+float max_component(Vec2 v) { return std::max(std::abs(v.x), std::abs(v.y)); }
 float length_of(Vec2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
 /// Gaussian by squared distance from the ellipse's centre, 0 at the edge (Heckbert 1989).
@@ -160,8 +160,8 @@ Float4 MipMap::at(const TextureCoordinates& place) const {
 
 /// Selects the level whose texels are half as wide as the footprint (pbrt 4th ed., 10.4.3).
 Float4 MipMap::filtered(const TextureCoordinates& place) const {
-  if (options_.filter == Filter::ewa) return of_ellipse(place);
-  const float texels = 2 * std::max(larger_part(place.dst_dx), larger_part(place.dst_dy)) * size_;
+  if (options_.filter == Filter::ewa) return filter_ellipse(place);
+  const float texels = 2 * std::max(max_component(place.dst_dx), max_component(place.dst_dy)) * size_;
   const float level = texels > 1 ? std::log2(texels) : 0;
   const size_t last = levels_.size() - 1;
   if (!(level < float(last))) return value(levels_[last], 0);
@@ -177,7 +177,7 @@ Float4 MipMap::filtered(const TextureCoordinates& place) const {
 
 /// Filters over the footprint's ellipse, between the two levels on which its minor axis is about a texel, with limited
 /// anisotropy (Heckbert 1989; pbrt 4th ed., 10.4.4).
-Float4 MipMap::of_ellipse(const TextureCoordinates& place) const {
+Float4 MipMap::filter_ellipse(const TextureCoordinates& place) const {
   const float along_x = length_of(place.dst_dx), along_y = length_of(place.dst_dy);
   const float length = std::max(along_x, along_y), narrow = std::min(along_x, along_y);
   if (!(narrow > 0) || !std::isfinite(length)) return bilinear(levels_[0], place.st);

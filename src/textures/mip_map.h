@@ -38,7 +38,7 @@ class MipMap {
   int channels() const { return channels_; }
   /// Calls use(values) for each texel of the finest level.
   template <class Use>
-  void each(const Use& use) const {
+  void for_each_texel(const Use& use) const {
     for (int y = 0; y < levels_[0].height; ++y)
       for (int x = 0; x < levels_[0].width; ++x) use(texel(levels_[0], x, y));
   }
@@ -55,7 +55,7 @@ class MipMap {
   Float4 bilinear(const Level& level, Vec2 st) const;
   Float4 filtered(const TextureCoordinates& place) const;
   Float4 ellipse(size_t index, Vec2 st, Vec2 p, Vec2 q) const;
-  Float4 of_ellipse(const TextureCoordinates& place) const;
+  Float4 filter_ellipse(const TextureCoordinates& place) const;
 
   Options options_;
   int channels_ = 1;

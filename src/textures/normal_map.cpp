@@ -25,7 +25,7 @@ void set_normal(Hit& hit, const Vec3& n, const Vec3& dpdu, const Vec3& dpdv) {
 }
 
 /// Removes the component along the shading normal.
-Vec3 along_surface(const Vec3& v, const Vec3& n) { return v - n * dot(n, v); }
+Vec3 tangential(const Vec3& v, const Vec3& n) { return v - n * dot(n, v); }
 
 /// Bump mapping: normals of the surface displaced along its normals by a texture (Blinn 1978; pbrt 4th ed., 10.5.3).
 class BumpMap final : public NormalBend {
@@ -33,8 +33,7 @@ class BumpMap final : public NormalBend {
   explicit BumpMap(std::shared_ptr<const FloatTexture> displacement) : displacement_(std::move(displacement)) {}
   /// Differentiates the displacement by finite differences over the footprint.
   void bend(Hit& hit) const override {
-    const Vec3 n = hit.shading.z, u = along_surface(hit.derivatives.dpdu, n),
-               v = along_surface(hit.derivatives.dpdv, n);
+    const Vec3 n = hit.shading.z, u = tangential(hit.derivatives.dpdu, n), v = tangential(hit.derivatives.dpdv, n);
     const float height = displacement_->evaluate(hit.at);
     const auto slope = [&](float dx, float dy, const Vec3& dp, Vec2 direction) {
       constexpr float kLeastStep = 0.0005f;
@@ -65,7 +64,7 @@ class NormalMap final : public NormalBend {
     const Vec3 local = normalize_any(Vec3{2 * c[0] - 1, 2 * c[1] - 1, 2 * c[2] - 1});
     const SurfaceDerivatives& d = hit.derivatives;
     const Vec3 n = Frame::along(hit.shading.z, d.dpdu).to_world(local);
-    const Vec3 u = normalize_any(along_surface(d.dpdu, n)), v = normalize_any(cross(n, u));
+    const Vec3 u = normalize_any(tangential(d.dpdu, n)), v = normalize_any(cross(n, u));
     set_normal(hit, n, u * length(d.dpdu), v * length(d.dpdv));
   }
 
@@ -83,7 +82,7 @@ constexpr Param kBends[] = {
      .doc = "Image of normals in the frame of (u, v): 2 c - 1 of its linear R, G and B. Overrides \"displacement\"."},
 };
 
-bool is_of_bend(const ParsedParam& p) { return std::ranges::find(kBends, p.name, &Param::name) != std::end(kBends); }
+bool is_bend_param(const ParsedParam& p) { return std::ranges::find(kBends, p.name, &Param::name) != std::end(kBends); }
 
 /// Adapts a BSDF with another shading frame to the frame of its caller. The BSDF's own normal determines the sides of
 /// directions.
@@ -150,12 +149,12 @@ extern const PluginInfo normal_bend_params{"material", "", "Normal and bump maps
 
 ParsedPlugin split_bend(const ParsedPlugin& material, bool of_bend) {
   ParsedPlugin part = material;
-  std::erase_if(part.params, [of_bend](const ParsedParam& p) { return is_of_bend(p) != of_bend; });
+  std::erase_if(part.params, [of_bend](const ParsedParam& p) { return is_bend_param(p) != of_bend; });
   return part;
 }
 
 std::shared_ptr<const NormalBend> make_normal_bend(const ParsedPlugin& material, ParamResolver& resolver) {
-  if (std::ranges::none_of(material.params, is_of_bend)) return nullptr;
+  if (std::ranges::none_of(material.params, is_bend_param)) return nullptr;
   const Params p(normal_bend_params, split_bend(material, true), resolver);
   if (p.given("normalmap") && !p.string("normalmap").empty()) {
     if (p.given("displacement")) p.warn("displacement", "\"normalmap\" is given too: this is ignored, as in pbrt-v4");

@@ -14,7 +14,9 @@ namespace {
 
 // ---- Mixtures of two textures ----
 
-Interval hull(const Interval& a, const Interval& b) { return {std::min(a.min, b.min), std::max(a.max, b.max)}; }
+Interval interval_union(const Interval& a, const Interval& b) {
+  return {std::min(a.min, b.min), std::max(a.max, b.max)};
+}
 
 /// Mixes two textures. `Share` returns the second one's share, 0 to 1, and reads its own parameters.
 template <class Share>
@@ -24,10 +26,10 @@ class SharedFloat final : public FloatTexture {
       : share_(p, placement), first_(p.float_texture(Share::kFirst)), second_(p.float_texture(Share::kSecond)) {}
   /// A texture with share 0 is not evaluated.
   float evaluate(const TexturePoint& at) const override {
-    const float t = share_.of_second(at);
+    const float t = share_.second_share(at);
     return (t < 1 ? (1 - t) * first_->evaluate(at) : 0) + (t > 0 ? t * second_->evaluate(at) : 0);
   }
-  Interval range() const override { return hull(first_->range(), second_->range()); }
+  Interval range() const override { return interval_union(first_->range(), second_->range()); }
   bool is_range_tight() const override { return first_->is_range_tight() && second_->is_range_tight(); }
   bool needs_details() const override { return share_.needs_details(); }
 
@@ -42,7 +44,7 @@ class SharedSpectrum final : public SpectrumTexture {
   SharedSpectrum(const Params& p, const TexturePlacement& placement)
       : share_(p, placement), first_(p.spectrum_texture(Share::kFirst)), second_(p.spectrum_texture(Share::kSecond)) {}
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
-    const float t = share_.of_second(at);
+    const float t = share_.second_share(at);
     SampledSpectrum sum;
     if (t < 1) sum += (1 - t) * first_->evaluate(at, lambda);
     if (t > 0) sum += t * second_->evaluate(at, lambda);
@@ -70,20 +72,23 @@ class Checkerboard {
       : is_solid_(p.integer("dimension") == 3), mapping_(p, placement), solid_(placement) {}
   bool needs_details() const { return true; }
   /// The filtered product of square waves is the product of the filtered ones.
-  float of_second(const TexturePoint& point) const {
+  float second_share(const TexturePoint& point) const {
     if (is_solid_) {
       const SolidCoordinates at = solid_.at(point);
-      const auto sign = [&](float Vec3::*axis) { return averaged(at.p.*axis, at.dp_dx.*axis, at.dp_dy.*axis); };
+      const auto sign = [&](float Vec3::*axis) {
+        return filtered_square_wave(at.p.*axis, at.dp_dx.*axis, at.dp_dy.*axis);
+      };
       return share(sign(&Vec3::x) * sign(&Vec3::y) * sign(&Vec3::z));
     }
     const TextureCoordinates at = mapping_.at(point);
-    return share(averaged(at.st.x, at.dst_dx.x, at.dst_dy.x) * averaged(at.st.y, at.dst_dx.y, at.dst_dy.y));
+    return share(filtered_square_wave(at.st.x, at.dst_dx.x, at.dst_dy.x) *
+                 filtered_square_wave(at.st.y, at.dst_dx.y, at.dst_dy.y));
   }
 
  private:
   static float share(float sign) { return std::clamp(0.5f - 0.5f * sign, 0.f, 1.f); }
   /// Filtered square wave: 1 from an even number to the next, else -1.
-  static float averaged(float x, float dx, float dy) {
+  static float filtered_square_wave(float x, float dx, float dy) {
     const float radius = 1.5f * std::max(std::abs(dx), std::abs(dy)), cell = std::floor(x);
     if (!std::isfinite(x) || !std::isfinite(radius)) return 0;
     const float in_period = x - 2 * std::floor(x / 2);
@@ -112,7 +117,7 @@ class Dots {
   Dots(const Params& p, const TexturePlacement& placement) : mapping_(p, placement) {}
   bool needs_details() const { return mapping_.needs_point(); }
   /// Position and presence of a dot are noise of its cell, with pbrt-v4's constants.
-  float of_second(const TexturePoint& point) const {
+  float second_share(const TexturePoint& point) const {
     const Vec2 st = mapping_.at(point).st;
     const float s = std::floor(st.x + 0.5f), t = std::floor(st.y + 0.5f);
     constexpr float kRadius = 0.35f, kShift = 0.5f - kRadius, kZ = 0.5f;
@@ -137,7 +142,7 @@ class DirectionMix {
   }
   bool needs_details() const { return true; }
   /// Returns 0 for normals parallel to the direction, 1 for perpendicular ones.
-  float of_second(const TexturePoint& point) const {
+  float second_share(const TexturePoint& point) const {
     return std::clamp(1 - std::abs(dot(point.n, direction_)), 0.f, 1.f);
   }
 
