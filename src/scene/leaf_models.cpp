@@ -20,7 +20,8 @@ const MaterialInfo& first_of(Infos&& infos, const char* what, const Holds& holds
 }
 
 /// Whether a mixture names one of these materials.
-bool mixes(const ParsedPlugin& mixture, const MaterialInfo& info, const std::set<std::string_view>& materials) {
+bool contains_material(const ParsedPlugin& mixture, const MaterialInfo& info,
+                       const std::set<std::string_view>& materials) {
   for (const Param& p : info.params) {
     const ParsedParam* given = p.kind == ParamKind::material ? find_param(mixture.params, p.name) : nullptr;
     const auto* names = given ? std::get_if<std::vector<std::string>>(&given->values) : nullptr;
@@ -85,7 +86,7 @@ std::vector<uint8_t> leaf_flags(const SceneSettings& description, const Registry
     for (size_t i = 0; i < flags.size(); ++i) {
       const auto& [name, plugin] = description.materials[i];
       const MaterialInfo* info = registry.materials.find(plugin.name);
-      if (flags[i] || !info || !(info->leaf || mixes(plugin, *info, leaves))) continue;
+      if (flags[i] || !info || !(info->leaf || contains_material(plugin, *info, leaves))) continue;
       flags[i] = 1, grows = true;
       if (!name.empty()) leaves.insert(name);
     }

@@ -76,15 +76,15 @@ std::optional<double> number(const ParsedPlugin& plugin, std::string_view name) 
 }
 
 /// Replaces the plug-ins of one description, kind by kind.
-class Answerer {
+class PbrtTranslator {
  public:
-  Answerer(const Unsupported& unsupported, const Log& log, Problems& problems)
+  PbrtTranslator(const Unsupported& unsupported, const Log& log, Problems& problems)
       : unsupported_(unsupported), log_(log), problems_(problems) {}
 
   /// Returns whether the plug-in was replaced. Also true after an error, so that it is reported once.
   template <class Info>
-  bool answer(std::string_view directive, const PluginTable<Info>& ours, std::span<const StandIn> stand_ins,
-              std::span<const std::string_view> old, ParsedPlugin& plugin) {
+  bool translate(std::string_view directive, const PluginTable<Info>& ours, std::span<const StandIn> stand_ins,
+                 std::span<const std::string_view> old, ParsedPlugin& plugin) {
     if (!ours.find(plugin.name) && std::ranges::find(old, plugin.name) != old.end()) {
       refuse_old(directive, plugin);
       plugin.name = ours.all().front()->name;
@@ -101,7 +101,7 @@ class Answerer {
   }
 
   /// Drops displacement, by which pbrt moves a mesh's vertices.
-  void leave_out_displacement(ParsedPlugin& shape) {
+  void drop_displacement(ParsedPlugin& shape) {
     if (shape.name != "plymesh") return;
     if (const ParsedParam* p = find_param(shape.params, "displacement"))
       problems_.attempt([&] {
@@ -156,7 +156,7 @@ void count_strata(ParsedPlugin& sampler) {
 }
 
 /// Chooses volpath for scenes with media, which pbrt's integrators other than path and simplepath see; path for others.
-void answer_integrator(const Registry& registry, Answerer& answerer, const Log& log, SceneDescription& d) {
+void translate_integrator(const Registry& registry, PbrtTranslator& translator, const Log& log, SceneDescription& d) {
   ParsedPlugin& integrator = d.integrator;
   std::vector<StandIn> stand_ins(std::begin(kIntegrators), std::end(kIntegrators));
   if (d.has_media() && registry.integrators.find("volpath")) {
@@ -165,7 +165,7 @@ void answer_integrator(const Registry& registry, Answerer& answerer, const Log& 
       if (by.name != "simplepath" && by.name != "randomwalk") by.ours = "volpath";
   }
   const std::string name = integrator.name;
-  if (answerer.answer("Integrator", registry.integrators, stand_ins, kOldIntegrators, integrator) &&
+  if (translator.translate("Integrator", registry.integrators, stand_ins, kOldIntegrators, integrator) &&
       std::ranges::find(kOtherImages, name) != std::end(kOtherImages))
     log.warn(integrator.where,
              fmt::format("Integrator \"{}\" is replaced by \"{}\", whose image is another", name, integrator.name));
@@ -225,50 +225,50 @@ void set_constant(TextureDescription& texture) {
 
 }  // namespace
 
-void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
-                         const Log& log, Problems& problems) {
+void translate_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
+                            const Log& log, Problems& problems) {
   warn_of_attributes(description, registry, log);
-  Answerer answerer(unsupported, log, problems);
+  PbrtTranslator translator(unsupported, log, problems);
   SceneDescription& d = description;
   problems.attempt([&] {
     if (d.sampler.name == "stratified" && !registry.samplers.find("stratified")) count_strata(d.sampler);
   });
-  answerer.answer("Sampler", registry.samplers, kSamplers, kOldSamplers, d.sampler);
+  translator.translate("Sampler", registry.samplers, kSamplers, kOldSamplers, d.sampler);
   // Shadow rays of volpath pass through material "interface", those of path do not. volpath is pbrt's default.
   const bool sees_through_interfaces =
       !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
-  answer_integrator(registry, answerer, log, d);
+  translate_integrator(registry, translator, log, d);
   const bool is_realistic = d.camera.name == "realistic";
-  if (answerer.answer("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
+  if (translator.translate("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
     problems.attempt([&] { set_field_of_view(d.camera, d.film); });
-  answerer.answer("Film", registry.films, kFilms, kOldFilms, d.film);
+  translator.translate("Film", registry.films, kFilms, kOldFilms, d.film);
   for (MaterialDescription& m : d.materials) {
     const bool is_hair = m.plugin.name == "hair";
     if (is_hair && !registry.materials.find("hair")) rename_color(m.plugin);
-    answerer.answer("Material", registry.materials, kMaterials, kOldMaterials, m.plugin);
+    translator.translate("Material", registry.materials, kMaterials, kOldMaterials, m.plugin);
   }
   for (TextureDescription& t : d.textures) {
     const bool is_real = t.value == TextureDescription::Value::real;
     const bool is_answered =
-        is_real ? answerer.answer("Texture", registry.float_textures, kTextures, kOldTextures, t.plugin)
-                : answerer.answer("Texture", registry.spectrum_textures, kTextures, kOldTextures, t.plugin);
+        is_real ? translator.translate("Texture", registry.float_textures, kTextures, kOldTextures, t.plugin)
+                : translator.translate("Texture", registry.spectrum_textures, kTextures, kOldTextures, t.plugin);
     if (is_answered) set_constant(t);
   }
   const auto answer_shapes = [&](std::vector<ShapeDescription>& shapes) {
-    for (ShapeDescription& s : shapes) answerer.leave_out_displacement(s.plugin);
+    for (ShapeDescription& s : shapes) translator.drop_displacement(s.plugin);
     std::erase_if(shapes, [&](const ShapeDescription& s) {
       if (sees_through_interfaces && s.medium_interface == 0 && d.materials[s.material].plugin.name == "interface")
         return true;
       if (registry.shapes.find(s.plugin.name) || std::ranges::find(kOldShapes, s.plugin.name) == std::end(kOldShapes))
         return false;
-      answerer.refuse_old("Shape", s.plugin);
+      translator.refuse_old("Shape", s.plugin);
       return true;
     });
   };
   answer_shapes(d.shapes);
   for (ObjectDescription& object : d.objects) answer_shapes(object.shapes);
-  if (answerer.old().empty()) return;
-  problems = answerer.old();  // other errors follow from the wrong version
+  if (translator.old().empty()) return;
+  problems = translator.old();  // other errors follow from the wrong version
   d = {};
 }
 

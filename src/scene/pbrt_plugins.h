@@ -11,7 +11,7 @@ namespace frond {
 /// Replaces names of pbrt-v4 plug-ins by frond's. Replacements with the same expected image are logged (samplers;
 /// integrators); others must be allowed by `unsupported` (scene/format/unsupported.h). Names of older
 /// versions of pbrt are errors that explain how to upgrade a file.
-void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
-                         const Log& log, Problems& problems);
+void translate_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
+                            const Log& log, Problems& problems);
 
 }  // namespace frond

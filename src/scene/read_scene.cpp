@@ -8,7 +8,7 @@ namespace frond {
 SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
                             const Unsupported& unsupported, Problems& problems) {
   SceneDescription description = parse_scene(paths, log, problems);
-  answer_pbrt_plugins(description, registry, unsupported, log, problems);
+  translate_pbrt_plugins(description, registry, unsupported, log, problems);
   description.has_errors = !problems.empty();
   return description;
 }
@@ -17,7 +17,7 @@ SceneDescription read_scene_text(const std::string& text, const std::string& nam
                                  const Log& log, const Unsupported& unsupported) {
   SceneDescription description = parse_scene_text(text, name, log);
   Problems problems;
-  answer_pbrt_plugins(description, registry, unsupported, log, problems);
+  translate_pbrt_plugins(description, registry, unsupported, log, problems);
   problems.check();
   return description;
 }

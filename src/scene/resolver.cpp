@@ -102,7 +102,7 @@ auto SceneResolver::make(const std::string& key, const Make& make, bool& needs_d
 }
 
 /// Propagates the flag to the referring object.
-void SceneResolver::pass_on(bool needs_details) {
+void SceneResolver::propagate_needs(bool needs_details) {
   if (needs_details && !needs_details_.empty()) needs_details_.back() = true;
 }
 
@@ -111,7 +111,7 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
                                                       TextureDescription::Value value, const PluginTable<Info>& table,
                                                       MadeTextures<Texture>& made) {
   if (const auto it = made.find(name); it != made.end()) {
-    pass_on(it->second.needs_details);
+    propagate_needs(it->second.needs_details);
     return it->second.texture;
   }
   bool has_other_kind = false;
@@ -134,7 +134,7 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
           });
         },
         needs_details);
-    pass_on(needs_details);
+    propagate_needs(needs_details);
     made.emplace(name, MadeTexture<Texture>{result, needs_details});
     return result;
   }
@@ -182,7 +182,7 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
 /// Creates the material on first use.
 std::shared_ptr<Material> SceneResolver::material(size_t index) {
   if (const auto it = materials_.find(index); it != materials_.end()) {
-    pass_on(it->second.needs_details);
+    propagate_needs(it->second.needs_details);
     return it->second.material;
   }
   const MaterialDescription& m = description_.materials[index];
@@ -197,7 +197,7 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
       },
       made.needs_details);
   if (made.bend) made.needs_details = true;
-  pass_on(made.needs_details);
+  propagate_needs(made.needs_details);
   return materials_.emplace(index, made).first->second.material;
 }
 

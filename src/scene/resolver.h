@@ -59,7 +59,7 @@ class SceneResolver final : public ParamResolver {
                                          MadeTextures<Texture>& made);
   template <class Make>
   auto make(const std::string& key, const Make& make, bool& needs_details);
-  void pass_on(bool needs_details);
+  void propagate_needs(bool needs_details);
   [[noreturn]] void fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const;
   void warn_of_clamping(const ParsedParam& p, double most);

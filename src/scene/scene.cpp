@@ -12,8 +12,8 @@ Scene::~Scene() = default;
 
 bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   GeometryHit at;
-  if (!meets(ray, key, at, point.hit)) return false;
-  describe(at, point);
+  if (!find_nearest(ray, key, at, point.hit)) return false;
+  compute_point(at, point);
   return true;
 }
 
@@ -28,7 +28,7 @@ uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
 }
 
 /// Resolves the indices of a hit to material and light.
-void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
+void Scene::compute_point(const GeometryHit& at, SurfacePoint& point) const {
   point.material = material_at_[at.material];
   point.light = at.surface ? lights_->of_surface[*at.surface].at(at.primitive) : nullptr;
   point.material_id = at.material;
@@ -44,7 +44,7 @@ void Scene::add_details(uint32_t material, Hit& hit) const {
 }
 
 /// In a periodic scene, searches the cells along the ray for the nearest hit.
-bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {
+bool Scene::find_nearest(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {
   if (!tiling_) return geometry_->intersect(ray, key, {is_detailed_.data()}, nearest, hit);
   float distance = INFINITY;
   return tiling_->march(ray, [&](const Tiling::Repeat& repeat) {

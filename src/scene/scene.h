@@ -114,8 +114,8 @@ class Scene final : public World {
   friend class SceneBuilder;
   Scene();
 
-  bool meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const;
-  void describe(const GeometryHit& at, SurfacePoint& point) const;
+  bool find_nearest(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const;
+  void compute_point(const GeometryHit& at, SurfacePoint& point) const;
   void add_details(uint32_t material, Hit& hit) const;
 
   Vec3d origin_{};

@@ -280,7 +280,7 @@ Answer answer(const std::string& text, const std::string& ignored = "") {
   const Registry registry = builtin_registry();
   result.problems.attempt([&] {
     result.scene = parse_scene_text(text, "s", result.log);
-    answer_pbrt_plugins(result.scene, registry, unsupported, result.log, result.problems);
+    translate_pbrt_plugins(result.scene, registry, unsupported, result.log, result.problems);
   });
   return result;
 }
@@ -307,7 +307,7 @@ TEST(PbrtFormat, ANamedMaterialWithoutTypeIsOneError) {
                                          "WorldBegin MakeNamedMaterial \"m\" NamedMaterial \"m\"\n"
                                          "Shape \"disk\"")},
                            silent_log(), problems);
-  answer_pbrt_plugins(scene, registry, {}, silent_log(), problems);
+  translate_pbrt_plugins(scene, registry, {}, silent_log(), problems);
   for (const MaterialDescription& m : scene.materials) EXPECT_TRUE(registry.materials.find(m.plugin.name));
   EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("needs parameter \"string type\"")));
 }

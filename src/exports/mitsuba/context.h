@@ -39,7 +39,7 @@ struct Context {
   /// Reports what Mitsuba has no equivalent of: a warning if --ignore-unsupported lists its kind, otherwise an error.
   /// `instead` says what is exported in its place, and what is lost. Returns whether it is a warning.
   bool lacks(std::string_view kind, const Location& where, const std::string& what, std::string_view instead) {
-    const bool passes = unsupported.lets_pass(kind);
+    const bool passes = unsupported.is_ignored(kind);
     if (passes)
       warn(where, fmt::format("{}: {}", what, instead));
     else

@@ -111,7 +111,7 @@ std::vector<SceneInput> scenes_of(const JobRun& run, std::string_view name) {
     }
     if (!is_open) scenes.emplace_back();
     scenes.back().files.emplace_back(files[i]);
-    is_open = files.size() > 1 && !holds_world(files[i]);
+    is_open = files.size() > 1 && !contains_world(files[i]);
   }
   return scenes;
 }

@@ -74,8 +74,8 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
     if (!saved_.empty())
       fail(saved_.back().where, "{} without {}", name_of(saved_.back().by), ender_of(saved_.back().by));
   }
-  settle_unknown_materials(problems);
-  settle_unknown_media(problems);
+  report_unknown_materials(problems);
+  report_unknown_media(problems);
   std::vector<std::string_view> defined;
   for (const auto& [text, name] : objects_)
     if (name.is_defined) defined.push_back(text);
@@ -89,7 +89,7 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
 }
 
 /// Reports unknown materials. As in pbrt, a name that no shape uses is only a warning.
-void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
+void DescriptionBuilder::report_unknown_materials(Problems& problems) {
   std::vector<bool> is_used(scene_.materials.size(), false);
   const auto use = [&](const std::vector<ShapeDescription>& shapes) {
     for (const ShapeDescription& shape : shapes) is_used[shape.material] = true;
@@ -114,7 +114,7 @@ void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
 }
 
 /// Reports unknown media that a shape or the camera has.
-void DescriptionBuilder::settle_unknown_media(Problems& problems) {
+void DescriptionBuilder::report_unknown_media(Problems& problems) {
   std::vector<bool> is_used(scene_.media.size(), false);
   const auto use = [&is_used](const std::optional<size_t>& medium) {
     if (medium) is_used[*medium] = true;
@@ -213,7 +213,7 @@ void DescriptionBuilder::transform_times(double start, double end, const Locatio
   scene_.transform_times = {start, end};
 }
 
-void DescriptionBuilder::note_still(std::string_view what, const Location& where) const {
+void DescriptionBuilder::warn_if_moving(std::string_view what, const Location& where) const {
   if (state_.transform.moves())
     log_.warn(where, fmt::format("{} does not move: its place is that of the start, as in pbrt-v4", what));
 }
@@ -259,7 +259,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   if (has_too_many_copies_) return;
   if (state_.defaults.use_count() > 1) {
     for (const auto& list : *state_.defaults)
-      for (const ParsedParam& p : list) count_copy(p, where);
+      for (const ParsedParam& p : list) limit_attribute_copies(p, where);
     state_.defaults = std::make_shared<Defaults>(*state_.defaults);
   }
   auto& defaults = (*state_.defaults)[static_cast<size_t>(found - kTargets.begin())];
@@ -279,13 +279,13 @@ ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target targe
     const auto own_end = plugin.params.begin() + static_cast<std::ptrdiff_t>(own);
     if (std::any_of(plugin.params.begin(), own_end, [&](const ParsedParam& given) { return given.name == p.name; }))
       continue;
-    count_copy(p, plugin.where);
+    limit_attribute_copies(p, plugin.where);
     if (!has_too_many_copies_) plugin.params.push_back(p);
   }
   return plugin;
 }
 
-void DescriptionBuilder::count_copy(const ParsedParam& param, const Location& where) {
+void DescriptionBuilder::limit_attribute_copies(const ParsedParam& param, const Location& where) {
   constexpr size_t kMost = size_t{512} << 20;
   if (has_too_many_copies_) return;
   copied_bytes_ += sizeof param + std::visit([](const auto& v) { return v.size() * sizeof v[0]; }, param.values);
@@ -363,7 +363,7 @@ void DescriptionBuilder::make_named_medium(const std::string& name, ParsedPlugin
   plugin = typed_by_parameter("MakeNamedMedium", name, std::move(plugin));
   if (!state_.transform.is_valid()) fail(where, "the medium's transform cannot be inverted");
   media_.at(name).is_defined = true;
-  note_still("a medium", where);
+  warn_if_moving("a medium", where);
   scene_.media[index] = {name, with_defaults(std::move(plugin), Target::medium), state_.transform.start};
 }
 
@@ -376,7 +376,7 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
   const auto [known, is_new] = textures_.emplace(std::pair(kind, name.text), name.where);
   if (!is_new)
     fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
-  note_still("a texture", name.where);
+  warn_if_moving("a texture", name.where);
   scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture),
                              state_.transform.is_valid() ? state_.transform.start : SceneTransform()});
 }
@@ -426,7 +426,7 @@ void DescriptionBuilder::light(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
   if (state_.open_object)
     log_.warn(plugin.where, "a light inside an object is not part of its instances: it shines once");
-  note_still("a light", plugin.where);
+  warn_if_moving("a light", plugin.where);
   scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform.start});
 }
 

@@ -118,7 +118,7 @@ class DescriptionBuilder {
   template <class Change>
   void change_transform(const Change& change, std::string_view directive, const Location& where);
   /// Warns if the current transform moves: `what` does not.
-  void note_still(std::string_view what, const Location& where) const;
+  void warn_if_moving(std::string_view what, const Location& where) const;
   InstanceList& open_instances() {
     return state_.open_object ? scene_.objects[*state_.open_object].instances : scene_.instances;
   }
@@ -131,14 +131,14 @@ class DescriptionBuilder {
   void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
   /// As in pbrt, AttributeEnd also closes TransformBegin, and TransformEnd AttributeBegin.
   void end(std::string_view directive, std::string_view beginner, const Location& where);
-  void settle_unknown_materials(Problems& problems);
-  void settle_unknown_media(Problems& problems);
+  void report_unknown_materials(Problems& problems);
+  void report_unknown_media(Problems& problems);
   std::optional<size_t> medium_called(const Quoted& name);
   uint32_t current_interface();
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target);
   /// Counts a copy of a parameter by Attribute. Beyond a limit of all copies it throws InputError once; no further ones
   /// are made.
-  void count_copy(const ParsedParam& param, const Location& where);
+  void limit_attribute_copies(const ParsedParam& param, const Location& where);
   void note_color_space(std::vector<ParsedParam>& params) const;
   /// Sets the film's colour space to the current one.
   void set_film_space();

@@ -184,7 +184,7 @@ void with_plugin(Directive d) {
   (d.scene().*act)(d.plugin());
 }
 template <void (DescriptionBuilder::*act)(const Location&)>
-void alone(Directive d) {
+void without_arguments(Directive d) {
   (d.scene().*act)(d.where);
 }
 
@@ -194,7 +194,7 @@ enum class Block : uint8_t { options, world, any };
 struct DirectiveEntry {
   std::string_view name;
   Block block;
-  void (*carry_out)(Directive);
+  void (*execute)(Directive);
 };
 
 using Builder = DescriptionBuilder;
@@ -205,8 +205,8 @@ constexpr DirectiveEntry kDirectives[] = {
     {"ActiveTransform", Block::any, active_transform},
     {"AreaLightSource", Block::world, with_plugin<&Builder::area_light>},
     {"Attribute", Block::any, attribute},
-    {"AttributeBegin", Block::world, alone<&Builder::attribute_begin>},
-    {"AttributeEnd", Block::world, alone<&Builder::attribute_end>},
+    {"AttributeBegin", Block::world, without_arguments<&Builder::attribute_begin>},
+    {"AttributeEnd", Block::world, without_arguments<&Builder::attribute_end>},
     {"Camera", Block::options, with_plugin<&Builder::camera>},
     {"ColorSpace", Block::any, with_name<&Builder::color_space>},
     {"ConcatTransform", Block::any, [](Directive d) { d.scene().concat(matrix(d), d.name, d.where); }},
@@ -223,7 +223,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"MediumInterface", Block::any, medium_interface},
     {"NamedMaterial", Block::world, with_name<&Builder::named_material>},
     {"ObjectBegin", Block::world, with_name<&Builder::object_begin>},
-    {"ObjectEnd", Block::world, alone<&Builder::object_end>},
+    {"ObjectEnd", Block::world, without_arguments<&Builder::object_end>},
     {"ObjectInstance", Block::world, with_name<&Builder::object_instance>},
     {"Option", Block::any, option},
     {"PixelFilter", Block::options, option_plugin<&Scene::filter>},
@@ -234,12 +234,12 @@ constexpr DirectiveEntry kDirectives[] = {
     {"Shape", Block::world, with_plugin<&Builder::shape>},
     {"Texture", Block::world, texture},
     {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
-    {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
-    {"TransformEnd", Block::world, alone<&Builder::transform_end>},
+    {"TransformBegin", Block::world, without_arguments<&Builder::transform_begin>},
+    {"TransformEnd", Block::world, without_arguments<&Builder::transform_end>},
     {"TransformTimes", Block::options, transform_times},
     {"Translate", Block::any,
      [](Directive d) { d.scene().concat(SceneTransform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
-    {"WorldBegin", Block::any, alone<&Builder::world_begin>},
+    {"WorldBegin", Block::any, without_arguments<&Builder::world_begin>},
 };
 
 /// Directives of pbrt-v2. pbrt-v4's "pbrt --upgrade" reads files of pbrt-v3 only.
@@ -306,7 +306,7 @@ void check_begins_scene(const Token& first, const Location& where) {
 }
 
 /// Throws InputError for a directive in the wrong block.
-void carry_out(const Token& name, DirectiveContext& context) {
+void execute(const Token& name, DirectiveContext& context) {
   const Location where = context.tokens.where(name);
   const DirectiveEntry* entry = find_directive(name);
   if (!entry) fail_unknown(name, where);
@@ -317,7 +317,7 @@ void carry_out(const Token& name, DirectiveContext& context) {
     if (context.scene.is_incomplete()) throw Consequence(where, message);
     fail(where, "{}", message);
   }
-  entry->carry_out({entry->name, where, context});
+  entry->execute({entry->name, where, context});
 }
 
 }  // namespace frond

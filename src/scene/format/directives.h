@@ -20,7 +20,7 @@ struct DirectiveContext {
 
 /// Reads the arguments of directive `name`, whose word has been consumed, and executes it. Include and Import are
 /// handled by the parser. Throws InputError, also for unknown directives.
-void carry_out(const Token& name, DirectiveContext& context);
+void execute(const Token& name, DirectiveContext& context);
 
 /// Throws InputError if the first token of an included file is no directive, and not nearly one: the file is none of a
 /// scene, and one error is enough. `where`: of the token.

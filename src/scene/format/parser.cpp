@@ -103,7 +103,7 @@ void SceneReader::read_directive(Tokenizer& tokens, DirectiveContext& context) {
     else if (word.kind == Token::Kind::word && word.text == "Import")
       import(tokens, tokens.where(word));
     else
-      carry_out(word, context);
+      execute(word, context);
   } catch (const InputError&) {
     if (argument.kind == Token::Kind::string) scene_.unread.emplace(argument.text);
     if (word.text == "Include" || word.text == "Import") scene_.is_incomplete = true;
@@ -174,7 +174,7 @@ SceneDescription parse_scene(const fs::path& path, const Log& log) {
 namespace {
 
 /// `main` lists the files already searched, the main file first.
-bool holds_world(SceneSettings& main, const fs::path& path) {
+bool contains_world(SceneSettings& main, const fs::path& path) {
   if (std::ranges::find(main.files, path) != main.files.end()) return false;
   main.files.push_back(path);
   std::string text = read_file_bytes(path, {});
@@ -190,7 +190,7 @@ bool holds_world(SceneSettings& main, const fs::path& path) {
       tokens.next();
       if (!is_word || word.text != "Include") return;
       const Token name = tokens.next();
-      holds = holds_world(main, main.resolve(tokens.text_of(name), tokens.where(name)));
+      holds = contains_world(main, main.resolve(tokens.text_of(name), tokens.where(name)));
     });
     if (holds) return true;
     if (!is_right) tokens.skip_to_directive(word, is_directive);
@@ -201,12 +201,12 @@ bool holds_world(SceneSettings& main, const fs::path& path) {
 }  // namespace
 
 /// An unreadable file counts as a scene, so that its error is reported for that scene.
-bool holds_world(const fs::path& path) {
+bool contains_world(const fs::path& path) {
   if (path == "-") return false;
   bool holds = false;
   Problems problems;
   SceneSettings main;
-  return !problems.attempt([&] { holds = holds_world(main, path); }) || holds;
+  return !problems.attempt([&] { holds = contains_world(main, path); }) || holds;
 }
 
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log) {

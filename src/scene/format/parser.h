@@ -21,7 +21,7 @@ SceneDescription parse_scene(const std::vector<std::filesystem::path>& paths, co
 
 /// Whether the file, or a file that it includes, contains WorldBegin, and thus completes a scene. Other errors are
 /// ignored. An unreadable file counts as a scene; standard input does not, because it can be read only once.
-bool holds_world(const std::filesystem::path& path);
+bool contains_world(const std::filesystem::path& path);
 
 /// Same as parse_scene for text; `name` is used in errors and to resolve Include.
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log);

@@ -28,7 +28,7 @@ Unsupported::Unsupported(const std::string& kinds_given) {
 
 void Unsupported::handle(std::string_view kind, const Location& where, std::string_view feature,
                          std::string_view instead, const Log& log) const {
-  if (!lets_pass(kind))
+  if (!is_ignored(kind))
     fail(where, "{} of pbrt-v4 is not supported; with --ignore-unsupported={} it {}", feature, kind, instead);
   log.warn(where, fmt::format("{} of pbrt-v4 is not supported: it {}", feature, instead));
 }

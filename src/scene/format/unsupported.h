@@ -21,7 +21,7 @@ class Unsupported {
   static const std::vector<std::string_view>& kinds();
 
   /// Kinds of an export that are not in kinds() pass with "all" only.
-  bool lets_pass(std::string_view kind) const { return passes_all_ || passing_.contains(kind); }
+  bool is_ignored(std::string_view kind) const { return passes_all_ || passing_.contains(kind); }
   /// Warns if the kind is listed; otherwise throws InputError, which names the option --ignore-unsupported. `feature`
   /// and `instead` describe the feature and its replacement: "Camera "realistic"" and "is replaced by "perspective"".
   void handle(std::string_view kind, const Location& where, std::string_view feature, std::string_view instead,

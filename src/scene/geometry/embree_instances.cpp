@@ -9,12 +9,12 @@
 namespace frond {
 namespace {
 
-/// The fourth lane has no meaning. It is 1 because 0 would make `passes` multiply 0 by infinity.
+/// The fourth lane has no meaning. It is 1 because 0 would make `intersects_box` multiply 0 by infinity.
 Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 1}; }
 
 /// Whether a ray hits a box. The world-space box of an instance is larger than its object-space box, so most rays that
 /// hit the former miss the latter.
-bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
+bool intersects_box(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
   const Float4 inverse = 1 / direction;
   const Float4 a = (to_float4(box.min) - origin) * inverse, b = (to_float4(box.max) - origin) * inverse;
   // NaN occurs if a ray lies in a face's plane. Either result is correct, because boxes are slightly enlarged.
@@ -50,7 +50,7 @@ void transform(const AffineMap::Inverse& map, const RTCRay8& in, RTCRay8& out) {
 }
 
 /// Tests a packet. Sets `passing` for each ray; returns whether any ray hits.
-bool passes(const RTCRay8& rays, const Bounds& box, const int* valid, int* passing) {
+bool intersects_box(const RTCRay8& rays, const Bounds& box, const int* valid, int* passing) {
   Float8 enter{}, leave = lanes(rays.tfar);
   const auto clip = [&](const float* origins, const float* directions, float low, float high) {
     const Float8 inverse = 1 / lanes(directions);
@@ -82,7 +82,7 @@ struct Callbacks {
     AffineMap::Inverse made;
     const AffineMap::Inverse& map = set.inverse(instance.row, ray.time, made);
     inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar, ray.time);
-    return passes(embree::origin(inner), embree::direction(inner), ray.tfar, set.object(instance.row).bounds);
+    return intersects_box(embree::origin(inner), embree::direction(inner), ray.tfar, set.object(instance.row).bounds);
   }
 
   /// Embree's intersection callback, for single rays and for packets.
@@ -120,7 +120,7 @@ struct Callbacks {
     if (object.only_primitive) {
       constexpr embree::Target kOnly{0, 0};
       const Ray inner = embree::to_ray(nested.ray);
-      if (const auto point = embree::meet(*object.only_primitive, kOnly, inner, query, *query.lane)) {
+      if (const auto point = embree::intersect_shape(*object.only_primitive, kOnly, inner, query, *query.lane)) {
         embree::report(*point, kOnly, reinterpret_cast<RTCRayHitN*>(&ray), 1, 0, query);
         query.lane->hit[level] = instance;
       }
@@ -144,7 +144,7 @@ struct Callbacks {
     const GeometryObject& object = set.object(instance.row);
     query.enter(instance);
     if (object.only_primitive) {
-      if (embree::meet(*object.only_primitive, {0, 0}, embree::to_ray(nested), query, *query.lane))
+      if (embree::intersect_shape(*object.only_primitive, {0, 0}, embree::to_ray(nested), query, *query.lane))
         ray.tfar = -INFINITY;
     } else {
       embree::occluded(object.scene.get(), nested, query);
@@ -182,7 +182,7 @@ struct Callbacks {
     } else {
       transform(set.inverse(instance.row, 0, made), rays, inner);
     }
-    return passes(inner, set.object(instance.row).bounds, valid, passing);
+    return intersects_box(inner, set.object(instance.row).bounds, valid, passing);
   }
 
   /// Intersects a packet. Rays that miss the object's box are masked out.

@@ -19,8 +19,8 @@ TexturePoint texture_point(const AnalyticShape& shape, unsigned primitive, const
 
 /// Stochastic alpha test: decided by a hash of the ray and the primitive, so that it does not depend on Embree's
 /// traversal order. `layer` counts the crossings of one primitive along the ray.
-bool passes(const Surface& surface, const Target& target, const TexturePoint& at, const Query& query, const Lane& lane,
-            unsigned layer = 0) {
+bool intersects_box(const Surface& surface, const Target& target, const TexturePoint& at, const Query& query,
+                    const Lane& lane, unsigned layer = 0) {
   const float alpha = surface.alpha->evaluate(at);
   if (alpha >= 1) return false;
   RandomStream random(
@@ -54,7 +54,7 @@ void filter_alpha(const RTCFilterFunctionNArguments* args) {
     if (!args->valid[i]) continue;
     attempt(query, [&] {
       const RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
-      if (passes(surface, {hit.geomID, hit.primID}, texture_point(surface, hit), query, query.lane[i]))
+      if (intersects_box(surface, {hit.geomID, hit.primID}, texture_point(surface, hit), query, query.lane[i]))
         args->valid[i] = 0;
     });
   }
@@ -70,7 +70,7 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
     if (!args->valid[i]) continue;
     attempt(query, [&] {
       const Ray ray = to_ray(rtcGetRayFromRayN(rays, args->N, i));
-      if (const auto point = meet(surface, target, ray, query, query.lane[i]))
+      if (const auto point = intersect_shape(surface, target, ray, query, query.lane[i]))
         report(*point, target, args->rayhit, args->N, i, query);
     });
   }
@@ -151,12 +151,13 @@ struct SceneCallbacks {
 
 }  // namespace
 
-std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
-                               const Lane& lane) {
+std::optional<ShapePoint> intersect_shape(const Surface& surface, const Target& target, const Ray& ray,
+                                          const Query& query, const Lane& lane) {
   const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
   auto point = shape.intersect(target.primitive, ray, 0);
-  for (unsigned layer = 0; point && surface.alpha &&
-                           passes(surface, target, texture_point(shape, target.primitive, *point), query, lane, layer);
+  for (unsigned layer = 0;
+       point && surface.alpha &&
+       intersects_box(surface, target, texture_point(shape, target.primitive, *point), query, lane, layer);
        ++layer) {
     const float behind = point->t;
     point = shape.intersect(target.primitive, ray, behind);

@@ -53,8 +53,8 @@ struct Target {
 };
 
 /// Returns the nearest point at which an analytic surface stops the ray, if any. Points with alpha 0 are skipped.
-std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
-                               const Lane& lane);
+std::optional<ShapePoint> intersect_shape(const Surface& surface, const Target& target, const Ray& ray,
+                                          const Query& query, const Lane& lane);
 
 /// Stores the point as the hit of ray i of N.
 void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, unsigned n, unsigned i, Query& query);

@@ -109,7 +109,7 @@ void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDeriv
 }
 
 /// Rescales a normal so that products with a map's entries neither overflow nor underflow.
-Vec3 of_moderate_length(const Vec3& n) {
+Vec3 rescaled_normal(const Vec3& n) {
   const float square = dot(n, n);
   return square > 1e-16f && square < 1e16f ? n : normalize_any(n);
 }
@@ -118,8 +118,8 @@ Vec3 of_moderate_length(const Vec3& n) {
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3& extent, Vec3* ns) {
   hit.p = map.point(hit.p);
   extent = map.bound_point(extent);
-  hit.ng = inverse.normal_from_object(of_moderate_length(hit.ng));
-  if (ns) *ns = inverse.normal_from_object(of_moderate_length(*ns));
+  hit.ng = inverse.normal_from_object(rescaled_normal(hit.ng));
+  if (ns) *ns = inverse.normal_from_object(rescaled_normal(*ns));
 }
 
 /// Component along the normal `ng`, a unit vector, of a bound of coordinates: errors within the surface's plane do not
@@ -173,7 +173,7 @@ bool Geometry::intersect(const Ray& ray, uint64_t key, DetailedMaterials detaile
   embree::Query context(&lane);
   if (!closest(ray, context, query)) return false;
   met.t = query.ray.tfar;
-  describe(query.hit, lane, ray, detailed, met, hit);
+  compute_hit(query.hit, lane, ray, detailed, met, hit);
   return true;
 }
 
@@ -202,13 +202,13 @@ uint32_t Geometry::intersect(const RayPacket& packet, DetailedMaterials detailed
     if (hits >> i & 1) {
       const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&query.hit), RayPacket::kWidth, i);
       met[i].t = query.ray.tfar[i];
-      describe(at, context.lanes[i], packet.rays[i], detailed, met[i], points[i].hit);
+      compute_hit(at, context.lanes[i], packet.rays[i], detailed, met[i], points[i].hit);
     }
   return hits;
 }
 
-void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
-                        GeometryHit& met, Hit& hit) const {
+void Geometry::compute_hit(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
+                           GeometryHit& met, Hit& hit) const {
   const GeometryObject* object = world_.get();
   const uint32_t level = embree::level_of(at);
   hit.at.instance = {};

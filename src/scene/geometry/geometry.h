@@ -127,8 +127,8 @@ class Geometry {
  private:
   bool closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const;
   uint32_t closest(const RayPacket& packet, embree::Query& context, const int* valid, RTCRayHit8& query) const;
-  void describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
-                GeometryHit& met, Hit& hit) const;
+  void compute_hit(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
+                   GeometryHit& met, Hit& hit) const;
   embree::Scene new_scene() const;
   std::unique_ptr<GeometryObject> build(ObjectParts parts, uint64_t first_id);
   void attach(GeometryObject& object);

@@ -28,7 +28,7 @@ bool has_small_meshes_beside_others(const ObjectParts& parts) {
 }
 
 /// Embree calls it while it builds, and gives up if it returns false.
-bool goes_on(void* stop, double /*share*/) { return !static_cast<const StopState*>(stop)->is_requested(); }
+bool continue_build(void* stop, double /*share*/) { return !static_cast<const StopState*>(stop)->is_requested(); }
 
 }  // namespace
 
@@ -71,7 +71,7 @@ std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t firs
   RTCScene scene = object->scene.get();
   attach(*object);
   StopState stop = current_stop();  // Embree builds in threads of its own
-  rtcSetSceneProgressMonitorFunction(scene, goes_on, &stop);
+  rtcSetSceneProgressMonitorFunction(scene, continue_build, &stop);
   rtcCommitScene(scene);
   rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
   check();

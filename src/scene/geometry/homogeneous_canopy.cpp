@@ -71,7 +71,7 @@ LeafPlacer::Cell LeafPlacer::cell_of(const Vec3d& p) const {
 }
 
 /// Searches the 27 cells around the position.
-bool LeafPlacer::takes_room(const Vec3d& p) {
+bool LeafPlacer::try_to_place(const Vec3d& p) {
   if (canopy_.apart == 0) return true;
   const Cell middle = cell_of(p);
   for (int64_t i = -1; i <= 1; ++i)
@@ -90,7 +90,7 @@ AffineMap LeafPlacer::place(std::span<float> values) {
   RandomStream random(hash_key(canopy_.seed, next_++));
   const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
   Vec3d at_position = position(random);
-  for (int i = 1; !takes_room(at_position); ++i) {
+  for (int i = 1; !try_to_place(at_position); ++i) {
     if (i == kMostTries) fail({}, "there is no room for leaf {}: they are to be {:g} apart", next_, canopy_.apart);
     at_position = position(random);
   }

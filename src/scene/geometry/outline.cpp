@@ -29,7 +29,7 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
 
 /// Returns few points whose convex hull contains all points: a prism along the axis of smallest extent, because leaves
 /// are flat.
-std::vector<Vec3> few_around(const std::vector<Vec3>& points, const Bounds& bounds) {
+std::vector<Vec3> reduced_outline(const std::vector<Vec3>& points, const Bounds& bounds) {
   constexpr size_t kFew = 16;
   if (points.size() <= kFew) return points;
   const Vec3 size = bounds.max - bounds.min;
@@ -61,7 +61,7 @@ std::vector<Vec3> outline_of(const ObjectParts& parts, const Bounds& bounds) {
         for (const Vec3& p : shape.outline(i)) points.push_back(p);
     }
   }
-  return few_around(points, bounds);
+  return reduced_outline(points, bounds);
 }
 
 }  // namespace frond
