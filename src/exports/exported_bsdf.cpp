@@ -43,7 +43,7 @@ SampledSpectrum ExportedBsdf::At::operator()(const Vec3& light, const Vec3& seen
   return bsdf_.f(seen, light, unused);
 }
 
-std::vector<std::vector<double>> in_fours(const std::vector<double>& wavelengths_nm) {
+std::vector<std::vector<double>> split_into_lanes(const std::vector<double>& wavelengths_nm) {
   std::vector<std::vector<double>> runs;
   for (const double nm : wavelengths_nm) {
     if (runs.empty() || runs.back().size() == kLanes) runs.emplace_back();

@@ -51,6 +51,6 @@ class ExportedBsdf {
 };
 
 /// Splits wavelengths into groups of up to four, in order.
-std::vector<std::vector<double>> in_fours(const std::vector<double>& wavelengths_nm);
+std::vector<std::vector<double>> split_into_lanes(const std::vector<double>& wavelengths_nm);
 
 }  // namespace frond

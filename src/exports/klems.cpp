@@ -94,16 +94,16 @@ class PairMean {
 };
 
 /// Result of the adaptive integration of a pair.
-struct Settled {
+struct PairIntegral {
   Lanes mean;
   double error;  ///< of pi f
   bool holds;
 };
 
 /// Raises the order until two results agree within the tolerance.
-Settled settle(const PairMean& pair) {
+PairIntegral integrate_to_tolerance(const PairMean& pair) {
   constexpr double kAbsolute = 2e-5, kRelative = 2e-4;  // of pi f
-  Settled s{pair.at(0), 0, false};
+  PairIntegral s{pair.at(0), 0, false};
   for (size_t level = 1; level < kOrders.size() && !s.holds; ++level) {
     const Lanes before = s.mean;
     s = {pair.at(level), 0, true};
@@ -148,11 +148,11 @@ std::vector<KlemsBasis::Node> KlemsBasis::nodes(size_t patch, int order) {
 KlemsMatrices::KlemsMatrices(const ExportMaterial& material, const std::vector<double>& wavelengths_nm)
     : f_(wavelengths_nm.size() * 4 * KlemsBasis::kPatches * KlemsBasis::kPatches) {
   size_t first = 0;
-  for (const std::vector<double>& run : in_fours(wavelengths_nm)) {
+  for (const std::vector<double>& run : split_into_lanes(wavelengths_nm)) {
     const ExportedBsdf bsdf(material, run);
     struct Worst {
       double error = 0;
-      size_t unsettled = 0;
+      size_t unconverged = 0;
     };
     std::array<Worst, 4 * KlemsBasis::kPatches> worst{};
     material.pool.for_each(int64_t(worst.size()), [&](int64_t row, int) {
@@ -161,15 +161,16 @@ KlemsMatrices::KlemsMatrices(const ExportMaterial& material, const std::vector<d
       const bool light_in_front = block < 2, reflected = block % 2 == 0;
       const LitSide lit = light_in_front ? LitSide::front : LitSide::back;
       for (size_t out = 0; out < KlemsBasis::kPatches; ++out) {
-        const Settled s = settle(PairMean(f, light_in_front, light_in_front == reflected, in, out));
+        const PairIntegral s =
+            integrate_to_tolerance(PairMean(f, light_in_front, light_in_front == reflected, in, out));
         for (size_t i = 0; i < run.size(); ++i)
           f_[place(first + i, lit, reflected) + out * KlemsBasis::kPatches + in] = float(s.mean[i]);
         Worst& w = worst[size_t(row)];
         w.error = std::max(w.error, s.error);
-        w.unsettled += !s.holds;
+        w.unconverged += !s.holds;
       }
     });
-    for (const Worst& w : worst) error_ = std::max(error_, w.error), unsettled_ += w.unsettled;
+    for (const Worst& w : worst) error_ = std::max(error_, w.error), unconverged_ += w.unconverged;
     first += run.size();
   }
 }

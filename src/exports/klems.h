@@ -58,7 +58,7 @@ class KlemsMatrices {
   /// Returns the largest difference of the last two rules in pi f, over all wavelengths.
   double error() const { return error_; }
   /// Returns the number of pairs of patches for which the last two rules do not agree within the tolerance.
-  size_t unsettled() const { return unsettled_; }
+  size_t unconverged() const { return unconverged_; }
 
  private:
   /// Index of a matrix in f_.
@@ -68,7 +68,7 @@ class KlemsMatrices {
 
   std::vector<float> f_;
   double error_ = 0;
-  size_t unsettled_ = 0;
+  size_t unconverged_ = 0;
 };
 
 }  // namespace frond

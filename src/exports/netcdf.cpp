@@ -72,14 +72,16 @@ class NetCdfFile {
   void flags(int variable, std::span<const std::string_view> words) {
     std::string meanings;
     for (const std::string_view word : words) (meanings += meanings.empty() ? "" : " ") += word;
-    const auto values = numbers_to(words.size());
+    const auto values = index_values(words.size());
     check(nc_.put_att_schar(id_, variable, "flag_values", NC_BYTE, values.size(), values.data()));
     attribute(variable, "flag_meanings", meanings);
   }
   void end_of_header() { check(nc_.enddef(id_)); }
   void put(int variable, const std::vector<double>& v) { check(nc_.put_var_double(id_, variable, v.data())); }
   void put(int variable, const std::vector<float>& v) { check(nc_.put_var_float(id_, variable, v.data())); }
-  void put_numbers_to(int variable, size_t count) { check(nc_.put_var_schar(id_, variable, numbers_to(count).data())); }
+  void put_index_values(int variable, size_t count) {
+    check(nc_.put_var_schar(id_, variable, index_values(count).data()));
+  }
 
   std::string finish() {
     NC_memio memory{};
@@ -94,7 +96,7 @@ class NetCdfFile {
   static constexpr size_t kFirstBytes = 1;  // initial size; unused bytes would remain in the file
 
   static std::string name(const Quantity& q) { return std::string(q.name); }
-  static std::vector<signed char> numbers_to(size_t count) {
+  static std::vector<signed char> index_values(size_t count) {
     std::vector<signed char> values;
     for (size_t i = 0; i < count; ++i) values.push_back(static_cast<signed char>(i));
     return values;
@@ -145,8 +147,8 @@ std::string netcdf_file(const ExportMaterial& material, const ExportRequest& req
   file.put(theta_i, t.theta_i_deg);
   file.put(theta_o, t.theta_o_deg);
   file.put(phi_o, t.phi_o_deg);
-  file.put_numbers_to(side, BsdfTable::kSides.size());
-  file.put_numbers_to(kind, BsdfTable::kKinds.size());
+  file.put_index_values(side, BsdfTable::kSides.size());
+  file.put_index_values(kind, BsdfTable::kKinds.size());
   file.put(reflectance, t.reflectance);
   file.put(transmittance, t.transmittance);
   file.put(f, t.f);

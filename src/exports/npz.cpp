@@ -26,14 +26,14 @@ std::string npy(const std::string& type, const std::vector<size_t>& shape, std::
 }
 
 template <class T>
-std::string numbers(const std::vector<size_t>& shape, const std::vector<T>& values) {
+std::string number_array(const std::vector<size_t>& shape, const std::vector<T>& values) {
   return npy(fmt::format("<f{}", sizeof(T)), shape,
              {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
 /// Returns an array of words in UTF-32, padded to the longest, as NumPy stores strings. Bytes above 127 are taken as
 /// Latin-1.
-std::string words(const std::vector<size_t>& shape, std::span<const std::string_view> values) {
+std::string string_array(const std::vector<size_t>& shape, std::span<const std::string_view> values) {
   size_t longest = 1;
   for (const std::string_view v : values) longest = std::max(longest, v.size());
   std::string data;
@@ -50,20 +50,20 @@ std::string npz_file(const ExportMaterial& material, const ExportRequest& reques
   const BsdfTable t = make_table(material, request);
   const size_t w = t.wavelengths_nm.size(), i = t.theta_i_deg.size(), o = t.theta_o_deg.size(), p = t.phi_o_deg.size();
   StoredZip zip;
-  zip.add("wavelength_nm.npy", numbers({w}, t.wavelengths_nm));
-  zip.add("side.npy", words({2}, BsdfTable::kSides));
-  zip.add("theta_i_deg.npy", numbers({i}, t.theta_i_deg));
-  zip.add("theta_o_deg.npy", numbers({o}, t.theta_o_deg));
-  zip.add("phi_o_deg.npy", numbers({p}, t.phi_o_deg));
-  zip.add("kind.npy", words({2}, BsdfTable::kKinds));
-  zip.add("R.npy", numbers({w, 2, i}, t.reflectance));
-  zip.add("T.npy", numbers({w, 2, i}, t.transmittance));
-  zip.add("f_per_sr.npy", numbers({w, 2, i, o, p, 2}, t.f));
+  zip.add("wavelength_nm.npy", number_array({w}, t.wavelengths_nm));
+  zip.add("side.npy", string_array({2}, BsdfTable::kSides));
+  zip.add("theta_i_deg.npy", number_array({i}, t.theta_i_deg));
+  zip.add("theta_o_deg.npy", number_array({o}, t.theta_o_deg));
+  zip.add("phi_o_deg.npy", number_array({p}, t.phi_o_deg));
+  zip.add("kind.npy", string_array({2}, BsdfTable::kKinds));
+  zip.add("R.npy", number_array({w, 2, i}, t.reflectance));
+  zip.add("T.npy", number_array({w, 2, i}, t.transmittance));
+  zip.add("f_per_sr.npy", number_array({w, 2, i, o, p, 2}, t.f));
   const std::string_view axes[] = {"wavelength_nm", "side", "theta_i_deg", "theta_o_deg", "phi_o_deg", "kind"};
-  zip.add("axes.npy", words({6}, axes));
+  zip.add("axes.npy", string_array({6}, axes));
   const std::string_view label = material.label, version = "frond " FROND_VERSION;
-  zip.add("material.npy", words({}, {&label, 1}));
-  zip.add("source.npy", words({}, {&version, 1}));
+  zip.add("material.npy", string_array({}, {&label, 1}));
+  zip.add("source.npy", string_array({}, {&version, 1}));
   return std::move(zip).finish();
 }
 

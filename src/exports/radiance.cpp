@@ -152,12 +152,13 @@ void check_radiance(const ExportRequest& request) { check_ascending("wavelengths
 std::string radiance_file(const ExportMaterial& material, const ExportRequest& request) {
   const auto nm = request.wavelengths_nm.empty() ? default_wavelengths() : request.wavelengths_nm;
   const KlemsMatrices matrices(material, nm);
-  if (matrices.unsettled() > 0)
+  if (matrices.unconverged() > 0)
     material.log.warn(
-        {}, fmt::format("{} of {} pairs of patches contain a lobe too narrow for the requested accuracy: pi f "
-                        "is uncertain by up to {:.2g}",
-                        matrices.unsettled(), in_fours(nm).size() * 4 * KlemsBasis::kPatches * KlemsBasis::kPatches,
-                        matrices.error()));
+        {},
+        fmt::format("{} of {} pairs of patches contain a lobe too narrow for the requested accuracy: pi f "
+                    "is uncertain by up to {:.2g}",
+                    matrices.unconverged(),
+                    split_into_lanes(nm).size() * 4 * KlemsBasis::kPatches * KlemsBasis::kPatches, matrices.error()));
   const double share = largest_share(matrices, nm.size());
   material.log.info(fmt::format(
       "{} wavelengths, 4 x 145 x 145 patches: the last two rules of integration differ by up to {:.2g} in pi f; {:.4f} "

@@ -53,7 +53,7 @@ constexpr Signature kRefused[] = {{"GIF", "GIF8"sv},
                                   {"PDF", "%PDF"sv},
                                   {"gzip", "\x1f\x8b"sv}};
 
-bool has(std::string_view bytes, const Signature& s) {
+bool matches_signature(std::string_view bytes, const Signature& s) {
   return bytes.size() >= s.offset && bytes.substr(s.offset).starts_with(s.bytes);
 }
 
@@ -102,7 +102,7 @@ bool is_tga(std::string_view bytes, const std::filesystem::path& path) {
 
 std::string_view image_format_of(std::string_view bytes, const std::filesystem::path& path, const Location& where) {
   for (const Signature& s : kRead)
-    if (has(bytes, s) && (s.format != "webp" || bytes.starts_with("RIFF"))) return s.format;
+    if (matches_signature(bytes, s) && (s.format != "webp" || bytes.starts_with("RIFF"))) return s.format;
   if (is_pfm(bytes)) return "pnm";
   if (is_bmp(bytes)) return "bmp";
   if (is_tga(bytes, path)) return "targa";
@@ -110,7 +110,8 @@ std::string_view image_format_of(std::string_view bytes, const std::filesystem::
   if (bytes.empty()) fail(where, "cannot read image \"{}\": the file is empty", path.string());
   if (is_netpbm(bytes)) fail(where, "cannot read image \"{}\": its format is Netpbm; {}", path.string(), kFormats);
   for (const Signature& s : kRefused)
-    if (has(bytes, s)) fail(where, "cannot read image \"{}\": its format is {}; {}", path.string(), s.format, kFormats);
+    if (matches_signature(bytes, s))
+      fail(where, "cannot read image \"{}\": its format is {}; {}", path.string(), s.format, kFormats);
   fail(where, "cannot read image \"{}\": its content is that of no image; {}", path.string(), kFormats);
 }
 

@@ -33,7 +33,7 @@ std::vector<std::string> unused_channels(const Image& image) {
   return unused;
 }
 
-void warn_of_rest(const Params& p, std::string_view name, const ImageFile& file) {
+void warn_of_unused_channels(const Params& p, std::string_view name, const ImageFile& file) {
   for (const std::string& message : file.left_out) p.warn(name, message);
   if (const auto unused = unused_channels(file.image); !unused.empty())
     p.warn(name, fmt::format("channels of the image that are not used: {}", names_of(unused, p.file(name))));
@@ -58,7 +58,7 @@ void check_finite(const Image& image, const std::filesystem::path& path, const L
           fail(where, "{} holds the value {} in column {}, row {}", path.string(), v, x, y);
 }
 
-bool is_near(const Chromaticity& a, const Chromaticity& b) {
+bool is_same_chromaticity(const Chromaticity& a, const Chromaticity& b) {
   constexpr double kSame = 2e-3;  // tolerance for chromaticities rounded to three decimals
   return std::abs(a.x - b.x) < kSame && std::abs(a.y - b.y) < kSame;
 }
@@ -96,7 +96,8 @@ const ColorSpace* color_space_of(const ImageFile& file) {
   const Chromaticities& c = *file.chromaticities;
   for (const ColorSpace& space : color_spaces()) {
     const Chromaticities& s = space.chromaticities;
-    if (is_near(c.red, s.red) && is_near(c.green, s.green) && is_near(c.blue, s.blue) && is_near(c.white, s.white))
+    if (is_same_chromaticity(c.red, s.red) && is_same_chromaticity(c.green, s.green) &&
+        is_same_chromaticity(c.blue, s.blue) && is_same_chromaticity(c.white, s.white))
       return &space;
   }
   return nullptr;
@@ -111,7 +112,7 @@ ImageFile read_finite(const std::filesystem::path& path, const Location& where) 
 namespace {
 
 /// Reduces a file to R, G and B.
-ImageFile only_rgb(ImageFile file, const std::filesystem::path& path, const Location& where) {
+ImageFile keep_rgb_channels(ImageFile file, const std::filesystem::path& path, const Location& where) {
   if (file.image.channels.size() > 2)
     file.image = rgb_of(file.image, path, where);
   else
@@ -123,18 +124,18 @@ ImageFile only_rgb(ImageFile file, const std::filesystem::path& path, const Loca
 }  // namespace
 
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where) {
-  return only_rgb(read_image(path, where), path, where);
+  return keep_rgb_channels(read_image(path, where), path, where);
 }
 
 ImageFile read_rgb(const Params& p, std::string_view name) {
   ImageFile file = read_image(p.file(name), p.where(name));
-  warn_of_rest(p, name, file);
-  return only_rgb(std::move(file), p.file(name), p.where(name));
+  warn_of_unused_channels(p, name, file);
+  return keep_rgb_channels(std::move(file), p.file(name), p.where(name));
 }
 
 ImageFile read_finite(const Params& p, std::string_view name) {
   ImageFile file = read_finite(p.file(name), p.where(name));
-  warn_of_rest(p, name, file);
+  warn_of_unused_channels(p, name, file);
   return file;
 }
 

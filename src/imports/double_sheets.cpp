@@ -40,15 +40,15 @@ std::vector<SheetTriangle> all_triangles(const std::vector<PlantMesh>& meshes) {
 }
 
 /// Disjoint sets of triangles; the representative of a set is its first triangle.
-class Sets {
+class DisjointSets {
  public:
-  explicit Sets(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  uint32_t first(uint32_t i) {
+  explicit DisjointSets(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  uint32_t find_root(uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join(uint32_t a, uint32_t b) {
-    a = first(a), b = first(b);
+  void unite(uint32_t a, uint32_t b) {
+    a = find_root(a), b = find_root(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
 
@@ -58,7 +58,7 @@ class Sets {
 
 /// Joins triangles that have an edge in common, are oriented alike there, and make an angle below 90 degrees: sheets.
 /// The rim of a leaf that has thickness separates its faces.
-Sets connected_sheets(const std::vector<SheetTriangle>& triangles) {
+DisjointSets connected_sheets(const std::vector<SheetTriangle>& triangles) {
   struct Edge {
     uint32_t from, to, triangle;
     bool is_reversed;
@@ -74,14 +74,14 @@ Sets connected_sheets(const std::vector<SheetTriangle>& triangles) {
   }
   check_stop();
   std::ranges::sort(edges, {}, &Edge::ends);
-  Sets sets(triangles.size());
+  DisjointSets sets(triangles.size());
   constexpr size_t kMostAtAnEdge = 8;
   for (size_t i = 0; i < edges.size(); ++i) {
     check_stop_now_and_then(i);
     for (size_t j = i + 1; j < edges.size() && j < i + kMostAtAnEdge && edges[i].ends() == edges[j].ends(); ++j) {
       const Vec3d &n = triangles[edges[i].triangle].normal, &other = triangles[edges[j].triangle].normal;
       if (edges[i].is_reversed != edges[j].is_reversed && dot(n, other) > 0)
-        sets.join(edges[i].triangle, edges[j].triangle);
+        sets.unite(edges[i].triangle, edges[j].triangle);
     }
   }
   return sets;
@@ -94,8 +94,8 @@ Sets connected_sheets(const std::vector<SheetTriangle>& triangles) {
 std::optional<std::vector<DoubleSheet>> double_sheets(std::vector<PlantMesh>& meshes, double tolerance,
                                                       const std::vector<bool>& remove) {
   std::vector<SheetTriangle> triangles = all_triangles(meshes);
-  Sets sheets = connected_sheets(triangles);
-  for (uint32_t j = 0; j < triangles.size(); ++j) triangles[j].sheet = sheets.first(j);
+  DisjointSets sheets = connected_sheets(triangles);
+  for (uint32_t j = 0; j < triangles.size(); ++j) triangles[j].sheet = sheets.find_root(j);
   const auto apart = hidden_distances(triangles, tolerance);
   if (!apart) return {};
   std::vector<std::pair<size_t, size_t>> covered(triangles.size());  // by first triangle of a sheet: covered, all

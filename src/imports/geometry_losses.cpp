@@ -28,8 +28,8 @@ void add_geometry_losses(ImportedScene& scene) {
     const bool has_map = material.normal_texture.image >= 0 && material.normal_texture.shares_uv(material.uv_texture());
     if (has_map && !mesh.uvs.empty() &&
         std::ranges::any_of(mesh.triangles, [&mesh](const auto& t) { return is_mirrored(mesh, t); }))
-      losses.add_of(material.name,
-                    "direction of the normal map where texture coordinates are mirrored (it is inverted)", true);
+      losses.add_for_material(
+          material.name, "direction of the normal map where texture coordinates are mirrored (it is inverted)", true);
   }
   scene.losses.insert(scene.losses.end(), losses.all().begin(), losses.all().end());
 }

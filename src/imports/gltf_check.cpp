@@ -48,10 +48,10 @@ class GltfCheck {
     if (asset && !text(*asset, "minVersion").empty() && text(*asset, "minVersion") != "2.0")
       throw std::runtime_error("it needs a reader of glTF " + std::string(text(*asset, "minVersion")));
     refuse_required();
-    properties("glTF", document_);
+    check_properties("glTF", document_);
     if (const Json* animations = member(document_, "animations"); animations && animations->size() > 1)
       losses_.add("animation", animations->size() - 1);
-    if (asset) properties("asset", *asset);
+    if (asset) check_properties("asset", *asset);
     scenes();
     defined_.insert(used_.begin(), used_.end());
     for (const std::string& name : defined_)
@@ -72,32 +72,32 @@ class GltfCheck {
   }
 
   /// Names the properties of an object that are not read. `material`: of which the object is a part; nullptr: of none.
-  void properties(std::string_view kind, const Json& object, const std::string* material = nullptr) {
+  void check_properties(std::string_view kind, const Json& object, const std::string* material = nullptr) {
     if (!object.is_object()) return;
     for (const auto& [key, value] : object.items()) {
       if (key == "extras") continue;  // of applications
       if (key == "extensions") {
-        extensions(kind, value, material);
+        check_extensions(kind, value, material);
         continue;
       }
       const GltfProperty* property = gltf_property(kind, key);
       if (!property) {
-        lose("unknown property " + std::string(kind) + "." + key, material, false);
+        record_loss("unknown property " + std::string(kind) + "." + key, material, false);
       } else if (property->use == GltfUse::lost || property->use == GltfUse::surface) {
         const bool has_effect =
             property->no_effect.empty() || value != Json::parse(property->no_effect.begin(), property->no_effect.end());
         const std::string says(property->says.empty() ? std::string(kind) + "." + key : property->says);
-        if (has_effect) lose(says, material, property->use == GltfUse::surface);
+        if (has_effect) record_loss(says, material, property->use == GltfUse::surface);
       }
     }
   }
 
   /// Extensions of materials are of their surface.
-  void extensions(std::string_view kind, const Json& all, const std::string* material) {
+  void check_extensions(std::string_view kind, const Json& all, const std::string* material) {
     if (!all.is_object()) return;
     for (const auto& [name, extension] : all.items()) {
       if (is_read_extension(name) && used_.contains(name)) {
-        properties(name, extension, material);
+        check_properties(name, extension, material);
         continue;
       }
       if (kind == "glTF") {  // definitions, which objects refer to
@@ -108,13 +108,13 @@ class GltfCheck {
       if (name == "KHR_lights_punctual")
         losses_.add("light (KHR_lights_punctual)");
       else
-        lose("extension " + name, material, kind == "material");
+        record_loss("extension " + name, material, kind == "material");
     }
   }
 
-  void lose(const std::string& what, const std::string* material, bool is_surface) {
+  void record_loss(const std::string& what, const std::string* material, bool is_surface) {
     if (material)
-      losses_.add_of(*material, what, !is_surface);
+      losses_.add_for_material(*material, what, !is_surface);
     else
       losses_.add(what);
   }
@@ -126,7 +126,7 @@ class GltfCheck {
     if (scenes->size() > 1) losses_.add("further scene", scenes->size() - 1);
     const Json* scene = element(document_, "scenes", integer(document_, "scene").value_or(0));
     if (!scene) return;
-    properties("scene", *scene);
+    check_properties("scene", *scene);
     add_nodes(*scene, "nodes");
     for (size_t at = 0; at < nodes_.size(); ++at) node(nodes_[at]);
   }
@@ -144,7 +144,7 @@ class GltfCheck {
   void node(uint64_t index) {
     const Json& node = *element(document_, "nodes", index);
     const std::string place = "nodes[" + std::to_string(index) + "]";
-    properties("node", node);
+    check_properties("node", node);
     add_nodes(node, "children");
     if (const Json* all = member(node, "extensions"); all && member(*all, "EXT_mesh_gpu_instancing"))
       throw std::runtime_error(place +
@@ -164,7 +164,7 @@ class GltfCheck {
 
   /// Each mesh once.
   void mesh(const Json& mesh, const std::string& place) {
-    properties("mesh", mesh);
+    check_properties("mesh", mesh);
     const Json* primitives = member(mesh, "primitives");
     if (!primitives || !primitives->is_array()) return;
     for (size_t i = 0; i < primitives->size(); ++i)
@@ -173,7 +173,7 @@ class GltfCheck {
 
   /// Its accessors, and its material once.
   void primitive(const Json& primitive, const std::string& place) {
-    properties("primitive", primitive);
+    check_properties("primitive", primitive);
     constexpr double kTriangles = 4, kFan = 6;
     const double mode = number(primitive, "mode", kTriangles);
     if (mode < kTriangles) return losses_.add("primitive of points or lines");
@@ -181,7 +181,7 @@ class GltfCheck {
     const Json* attributes = member(primitive, "attributes");
     const auto position = attributes ? integer(*attributes, "POSITION") : std::nullopt;
     if (!position) return losses_.add("primitive without positions");
-    properties("attributes", *attributes);
+    check_properties("attributes", *attributes);
     const auto check = [&](uint64_t accessor, AccessorUse use, const std::string& name) {
       return check_accessor(document_, accessor, use, place + ", " + name, is_binary_);
     };
@@ -211,14 +211,14 @@ class GltfCheck {
     std::set<uint64_t>& sets = known->second;
     if (!is_new) return sets;
     const std::string name(text(material, "name").empty() ? "unnamed" : text(material, "name"));
-    properties("material", material, &name);
+    check_properties("material", material, &name);
     const Json* all = member(material, "extensions");
     const Json* glossy = all && used_.contains("KHR_materials_pbrSpecularGlossiness")
                              ? member(*all, "KHR_materials_pbrSpecularGlossiness")
                              : nullptr;
     const Json* rough = member(material, "pbrMetallicRoughness");
     if (glossy) {
-      lose("gloss", &name, true);
+      record_loss("gloss", &name, true);
       if (const Json* image = member(*glossy, "diffuseTexture"))
         texture(*image, name, sets);
       else if (rough && member(*rough, "baseColorTexture"))
@@ -226,52 +226,52 @@ class GltfCheck {
                                  "\" has an image in pbrMetallicRoughness and none in "
                                  "KHR_materials_pbrSpecularGlossiness, which is not read; remove one of the two");
     } else if (rough) {
-      properties("pbrMetallicRoughness", *rough, &name);
+      check_properties("pbrMetallicRoughness", *rough, &name);
       if (const Json* image = member(*rough, "baseColorTexture")) texture(*image, name, sets);
-      if (!member(*rough, "metallicRoughnessTexture")) gloss(*rough, name);
+      if (!member(*rough, "metallicRoughnessTexture")) check_roughness(*rough, name);
     }
     if (const Json* image = member(material, "normalTexture")) {
       const Json* sampler = texture(*image, name, sets);
       if (sampler && (number(*sampler, "wrapS", kRepeat) != kRepeat || number(*sampler, "wrapT", kRepeat) != kRepeat))
-        lose("wrap mode of the normal map", &name, false);
+        record_loss("wrap mode of the normal map", &name, false);
     }
     return sets;
   }
 
   /// A metallic factor of 0.5 or more makes a conductor. Both factors are 1 by default, which is taken as no metal.
-  void gloss(const Json& rough, const std::string& name) {
+  void check_roughness(const Json& rough, const std::string& name) {
     const double metalness = number(rough, "metallicFactor", 1), roughness = number(rough, "roughnessFactor", 1);
-    if (metalness < 0.5 && roughness < 1) lose("gloss", &name, true);
-    if (metalness > 0 && metalness < 1) lose("metalness between 0 and 1 (metallicFactor)", &name, true);
+    if (metalness < 0.5 && roughness < 1) record_loss("gloss", &name, true);
+    if (metalness > 0 && metalness < 1) record_loss("metalness between 0 and 1 (metallicFactor)", &name, true);
     if (metalness == 1 && roughness == 1 && member(rough, "metallicFactor"))
-      lose("metalness of a roughness of 1 (metallicFactor)", &name, true);
+      record_loss("metalness of a roughness of 1 (metallicFactor)", &name, true);
   }
 
   /// Returns the sampler of a texture that a material uses; nullptr if it has none.
   const Json* texture(const Json& use, const std::string& material, std::set<uint64_t>& sets) {
-    properties("textureInfo", use, &material);
+    check_properties("textureInfo", use, &material);
     const uint64_t set = integer(use, "texCoord").value_or(0);
     sets.insert(set);
     if (const Json* all = member(use, "extensions"))
       if (const Json* transform = member(*all, "KHR_texture_transform"))
         if (const auto other = integer(*transform, "texCoord"); other && *other != set)
-          lose("texCoord of KHR_texture_transform", &material, false);
+          record_loss("texCoord of KHR_texture_transform", &material, false);
     const Json* texture = element(document_, "textures", integer(use, "index"));
     if (!texture) {
-      lose("image of a texture that does not exist", &material, false);
+      record_loss("image of a texture that does not exist", &material, false);
       return nullptr;
     }
-    properties("texture", *texture, &material);
+    check_properties("texture", *texture, &material);
     const Json* image = element(document_, "images", integer(*texture, "source"));
     if (!image)
-      lose("image of a texture without source", &material, false);
+      record_loss("image of a texture without source", &material, false);
     else
-      properties("image", *image, &material);
+      check_properties("image", *image, &material);
     const Json* sampler = element(document_, "samplers", integer(*texture, "sampler"));
     if (!sampler) return nullptr;
-    properties("sampler", *sampler, &material);
+    check_properties("sampler", *sampler, &material);
     if (number(*sampler, "wrapS", kRepeat) != number(*sampler, "wrapT", kRepeat))
-      lose("wrap mode along v (wrapT)", &material, false);
+      record_loss("wrap mode along v (wrapT)", &material, false);
     return sampler;
   }
 

@@ -100,7 +100,7 @@ constexpr GltfProperty kProperties[] = {
 /// Required ones are no error.
 constexpr std::string_view kRead[] = {"KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness"};
 
-bool fits(std::string_view pattern, std::string_view name) {
+bool matches_pattern(std::string_view pattern, std::string_view name) {
   return pattern.ends_with('*') ? name.starts_with(pattern.substr(0, pattern.size() - 1)) : name == pattern;
 }
 
@@ -110,7 +110,7 @@ std::span<const GltfProperty> gltf_properties() { return kProperties; }
 
 const GltfProperty* gltf_property(std::string_view object, std::string_view name) {
   const auto* found = std::ranges::find_if(
-      kProperties, [&](const GltfProperty& p) { return p.object == object && fits(p.name, name); });
+      kProperties, [&](const GltfProperty& p) { return p.object == object && matches_pattern(p.name, name); });
   return found == std::end(kProperties) ? nullptr : found;
 }
 

@@ -183,7 +183,7 @@ class SheetSearch {
   template <class Act>
   void visit(const Query& query, uint32_t index, const Act& act) {
     const Node& node = nodes_[index];
-    count(1);
+    count_comparisons(1);
     if (query.excludes(node)) return;
     if (node.second_child > 0) {
       visit(query, index + 1, act);
@@ -201,7 +201,7 @@ class SheetSearch {
     }
   }
 
-  void count(uint64_t comparisons) {
+  void count_comparisons(uint64_t comparisons) {
     if (comparisons > comparisons_left_) throw TooManyComparisons();
     if (comparisons_left_ / 1'000'000 != (comparisons_left_ - comparisons) / 1'000'000) check_stop();
     comparisons_left_ -= comparisons;

@@ -25,7 +25,7 @@ void LossList::add(const std::string& what, uint64_t count) {
     add("further properties");
 }
 
-void LossList::add_of(const std::string& material, const std::string& what, bool is_shape) {
+void LossList::add_for_material(const std::string& material, const std::string& what, bool is_shape) {
   ImportedLoss* known = find(what, true);
   if (!known && all_.size() >= kMostKinds) return add("further properties");
   if (!known) known = &all_.emplace_back(ImportedLoss{what, 0, {}, !is_shape});

@@ -21,7 +21,7 @@ class LossList {
   /// A property of the model.
   void add(const std::string& what, uint64_t count = 1);
   /// A property of a material's surface; if `is_shape`, one that every material of the mesh would lose.
-  void add_of(const std::string& material, const std::string& what, bool is_shape = false);
+  void add_for_material(const std::string& material, const std::string& what, bool is_shape = false);
   const std::vector<ImportedLoss>& all() const { return all_; }
 
  private:

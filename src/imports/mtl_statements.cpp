@@ -111,7 +111,7 @@ class MtlReader {
   void statement(const ObjStatement& s, const std::string& keyword) {
     const auto* known = std::ranges::find(kStatements, keyword, &MtlStatement::keyword);
     if (known == std::end(kStatements))
-      return lose("unknown statement \"" + std::string(s.keyword.substr(0, 40)) + "\"");
+      return record_loss("unknown statement \"" + std::string(s.keyword.substr(0, 40)) + "\"");
     const std::string says(known->says);
     switch (known->use) {
       case Use::color:
@@ -124,21 +124,21 @@ class MtlReader {
       case Use::inert:
         return;
       case Use::unless_0:
-        if (!are_all(0)) lose(says);
+        if (!are_all(0)) record_loss(says);
         return;
       case Use::unless_1:
-        if (!are_all(1)) lose(says);
+        if (!are_all(1)) record_loss(says);
         return;
       case Use::model:
         return model();
       case Use::lost:
-        return lose(says);
+        return record_loss(says);
     }
   }
 
   /// `is_shape`: it is lost with any material in place of this one.
-  void lose(const std::string& what, bool is_shape = false) {
-    if (used_.contains(name_)) losses_.add_of(name_, what, is_shape);
+  void record_loss(const std::string& what, bool is_shape = false) {
+    if (used_.contains(name_)) losses_.add_for_material(name_, what, is_shape);
   }
 
   bool are_all(double value) const {
@@ -149,7 +149,8 @@ class MtlReader {
   void model() {
     const std::optional<double> value = words_.empty() ? std::nullopt : number_of(words_[0]);
     if (!value || *value > 2 || *value < 0)
-      lose("reflection or refraction (illum " + std::string(words_.empty() ? "" : words_[0].substr(0, 10)) + ")");
+      record_loss("reflection or refraction (illum " + std::string(words_.empty() ? "" : words_[0].substr(0, 10)) +
+                  ")");
   }
 
   /// One number is a grey.
@@ -158,8 +159,8 @@ class MtlReader {
     for (const std::string_view word : words_)
       if (number_of(word)) numbers.emplace_back(word);
     if (numbers.size() != words_.size() || numbers.empty() || numbers.size() > 3)
-      return lose("colour that is not red, green and blue (Kd " +
-                  std::string(words_.empty() ? "" : words_[0].substr(0, 20)) + ")");
+      return record_loss("colour that is not red, green and blue (Kd " +
+                         std::string(words_.empty() ? "" : words_[0].substr(0, 20)) + ")");
     numbers.resize(3, numbers[0]);
     out_ += "Kd " + numbers[0] + " " + numbers[1] + " " + numbers[2] + "\n";
   }
@@ -167,13 +168,14 @@ class MtlReader {
   void opacity(bool is_clarity) {
     const bool is_halo = !words_.empty() && words_[0] == "-halo";
     if (is_halo) {
-      lose("opacity by direction (d -halo)", true);
+      record_loss("opacity by direction (d -halo)", true);
       words_.erase(words_.begin());
     }
     const std::optional<double> value = words_.empty() ? std::nullopt : number_of(words_[0]);
-    if (!value || !std::isfinite(*value)) return lose("opacity that is no number", true);
+    if (!value || !std::isfinite(*value)) return record_loss("opacity that is no number", true);
     const double opacity = is_clarity ? 1 - *value : *value;
-    if (opacity_ && std::abs(*opacity_ - opacity) > 1e-3) lose("the first of two opacities (d, Tr) that differ", true);
+    if (opacity_ && std::abs(*opacity_ - opacity) > 1e-3)
+      record_loss("the first of two opacities (d, Tr) that differ", true);
     opacity_ = opacity;
     out_ += (is_clarity ? "Tr " : "d ") + std::string(words_[0]) + "\n";
   }
@@ -197,9 +199,9 @@ class MtlReader {
         is_clamped = value == "on";
       else if (!has_no_effect(*option, value, words) &&
                !(option->name == "-imfchan" && value == "m" && keyword == "map_d"))
-        lose(keyword_text(s) + " " + std::string(option->name), true);
+        record_loss(keyword_text(s) + " " + std::string(option->name), true);
     }
-    if (rest.empty()) return lose(keyword_text(s) + " without a file", true);
+    if (rest.empty()) return record_loss(keyword_text(s) + " without a file", true);
     out_ += keyword + (is_clamped ? " -clamp on " : " ") + std::string(rest) + "\n";
   }
 

@@ -282,7 +282,8 @@ std::string ObjText::materials(std::string_view text) { return read_statements(t
 std::vector<ImportedLoss> ObjText::losses() const {
   LossList all = losses_;
   for (const std::string& name : used_)
-    if (!defined_.contains(name) && name != kDefault) all.add_of(name, "colour, which no material file states,");
+    if (!defined_.contains(name) && name != kDefault)
+      all.add_for_material(name, "colour, which no material file states,");
   return all.all();
 }
 

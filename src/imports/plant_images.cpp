@@ -51,7 +51,7 @@ std::string PlantImages::decoded_name(const std::string& name) const {
 /// Exporters write absolute paths of their own machine, and Windows' separators; names in glTF are percent-encoded,
 /// unless an exporter has forgotten it. A file that is not at the path is searched for by its name in the model's
 /// folder and in its subfolder textures.
-fs::path PlantImages::found(const std::string& name) const {
+fs::path PlantImages::find_file(const std::string& name) const {
   const fs::path folder = fs::canonical(model_).parent_path();
   for (std::string text : {name, decoded_name(name)}) {
     std::ranges::replace(text, '\\', '/');
@@ -74,7 +74,7 @@ PlantImages::Decoded* PlantImages::decoded(int32_t image) {
   try {
     auto result = std::make_unique<Decoded>();
     if (source.bytes.empty()) {
-      inputs_.push_back(found(source.name));
+      inputs_.push_back(find_file(source.name));
       const std::string bytes = read_file_bytes(inputs_.back(), {}, "image");
       result->bytes.assign(bytes.begin(), bytes.end());
     } else {
@@ -121,7 +121,7 @@ std::string PlantImages::original(int32_t image) {
   return result.path;
 }
 
-std::string PlantImages::tinted(int32_t image, const std::array<float, 3>& factor, const std::string& name) {
+std::string PlantImages::tinted_image(int32_t image, const std::array<float, 3>& factor, const std::string& name) {
   std::string& path = tinted_[{image, factor}];
   if (!path.empty()) return path;
   const ImageFile& source = decoded(image)->file;
@@ -140,7 +140,7 @@ std::string PlantImages::tinted(int32_t image, const std::array<float, 3>& facto
   return path;
 }
 
-std::string PlantImages::grey(int width, int height, std::vector<float> values, const std::string& name) {
+std::string PlantImages::write_grey_image(int width, int height, std::vector<float> values, const std::string& name) {
   Image out(width, height, {"Y"});
   out.pixels = std::move(values);
   const std::string path = new_path(name, ".png");

@@ -33,9 +33,9 @@ class PlantImages {
   /// Returns the path of the file with the image as it is in the model.
   std::string original(int32_t image);
   /// Returns the path of a file with the colours times a factor per channel, 8 bits in sRGB, which is made once.
-  std::string tinted(int32_t image, const std::array<float, 3>& factor, const std::string& name);
+  std::string tinted_image(int32_t image, const std::array<float, 3>& factor, const std::string& name);
   /// Returns the path of a new file with one channel, linear.
-  std::string grey(int width, int height, std::vector<float> values, const std::string& name);
+  std::string write_grey_image(int width, int height, std::vector<float> values, const std::string& name);
 
   const std::vector<PlantFile>& files() const { return files_; }
   /// Image files that were read.
@@ -53,7 +53,7 @@ class PlantImages {
   /// Returns a name of the model without glTF's percent-encoding.
   std::string decoded_name(const std::string& name) const;
   /// Returns where a file that the model names is. Throws InputError if it is not in the model's folder.
-  std::filesystem::path found(const std::string& name) const;
+  std::filesystem::path find_file(const std::string& name) const;
 
   const std::vector<ImportedImage>& images_;
   std::filesystem::path model_;

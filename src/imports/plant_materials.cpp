@@ -46,8 +46,10 @@ class MaterialWriter {
     const std::string& name = out.names.emplace_back(unique(quotable(m.name)));
     out.alpha.push_back(alpha_parameter(m, name));
     text_.clear();
-    const auto rule = std::ranges::find_if(rules_, [&m](const MaterialRule& r) { return matches(r.pattern, m.name); });
-    const std::string type = rule != rules_.end() ? ruled(*rule, m, name) : plain(m, name);
+    const auto rule =
+        std::ranges::find_if(rules_, [&m](const MaterialRule& r) { return matches_pattern(r.pattern, m.name); });
+    const std::string type =
+        rule != rules_.end() ? write_ruled_material(*rule, m, name) : write_default_material(m, name);
     out.types.push_back(type);
     out.rules.push_back(rule != rules_.end() ? &*rule : nullptr);
     out.text += textures_ + fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"{}\n", name, type, text_);
@@ -72,14 +74,14 @@ class MaterialWriter {
     return result;
   }
 
-  std::string ruled(const MaterialRule& rule, const ImportedMaterial& m, const std::string& name) {
+  std::string write_ruled_material(const MaterialRule& rule, const ImportedMaterial& m, const std::string& name) {
     used_rules_.insert(&rule);
     for (const ParsedParam& p : rule.material.params) text_ += "\n  " + parameter(p);
     for (const MappedParam& p : rule.mapped) {
       if (!images_.pixels(m.color_texture.image))
         fail({}, "{}: \"{}\" has no image of its colour, which \"{}\" would follow", rule.text, m.name, p.name);
       const std::string texture = name + "-" + p.name;
-      add_texture(name + "-brightness", "float", brightness(m.color_texture.image, m.name), m.color_texture, 1);
+      add_texture(name + "-brightness", "float", grey_image(m.color_texture.image, m.name), m.color_texture, 1);
       textures_ += fmt::format(
           "Texture \"{}\" \"float\" \"mix\" \"float tex1\" {} \"float tex2\" {} \"texture amount\" \"{}-brightness\"\n",
           texture, p.at_black, p.at_white, name);
@@ -89,7 +91,7 @@ class MaterialWriter {
   }
 
   /// Returns the path of the image of the mean of the linear channels of a colour.
-  std::string brightness(int32_t image, const std::string& name) {
+  std::string grey_image(int32_t image, const std::string& name) {
     std::string& path = brightness_[image];
     if (!path.empty()) return path;
     const ImageFile& file = *images_.pixels(image);
@@ -104,11 +106,12 @@ class MaterialWriter {
         values.push_back(std::clamp(sum / float(channels), 0.f, 1.f));
       }
     }
-    return path = images_.grey(file.image.width, file.image.height, std::move(values), name + "-brightness");
+    return path =
+               images_.write_grey_image(file.image.width, file.image.height, std::move(values), name + "-brightness");
   }
 
   /// Diffuse, or metal: glTF's alpha is the square of its roughness.
-  std::string plain(const ImportedMaterial& m, const std::string& name) {
+  std::string write_default_material(const ImportedMaterial& m, const std::string& name) {
     const bool is_metal = m.metalness >= 0.5f;
     text_ += "\n  " + color_parameter(m, name);
     if (!is_metal) return "diffuse";
@@ -121,7 +124,7 @@ class MaterialWriter {
     if (!images_.pixels(m.color_texture.image)) return fmt::format("\"rgb reflectance\" [ {} {} {} ]", r, g, b);
     const bool is_grey = std::max({r, g, b}) - std::min({r, g, b}) < 1e-3f;
     const std::string path = is_grey ? images_.original(m.color_texture.image)
-                                     : images_.tinted(m.color_texture.image, m.color, m.name + "-color");
+                                     : images_.tinted_image(m.color_texture.image, m.color, m.name + "-color");
     add_texture(name + "-color", "spectrum", path, m.color_texture, is_grey && r < 0.999f ? r : 1);
     return fmt::format("\"texture reflectance\" \"{}-color\"", name);
   }
@@ -179,13 +182,13 @@ class MaterialWriter {
         values.push_back(cut(m.opacity * opacity_at(file->image, x, y, is_map)));
     }
     if (values.size() <= 1 || std::ranges::none_of(values, [](float v) { return v < 1; })) return {};
-    return images_.grey(file->image.width, file->image.height, std::move(values), m.name + "-alpha");
+    return images_.write_grey_image(file->image.width, file->image.height, std::move(values), m.name + "-alpha");
   }
 
   void add_normal_map(const ImportedMaterial& m, PlantMaterials& out) {
     if (!images_.pixels(m.normal_texture.image)) return;
     if (!m.normal_texture.shares_uv(m.uv_texture())) {
-      out.losses.add_of(m.name, "normal map with texture coordinates of its own", true);
+      out.losses.add_for_material(m.name, "normal map with texture coordinates of its own", true);
       return;
     }
     out.text.insert(out.text.size() - 1,
@@ -204,7 +207,7 @@ class MaterialWriter {
 
 }  // namespace
 
-bool matches(const std::string& pattern, const std::string& name) {
+bool matches_pattern(const std::string& pattern, const std::string& name) {
   return fnmatch(pattern.c_str(), name.c_str(), FNM_CASEFOLD | FNM_NOESCAPE) == 0;
 }
 

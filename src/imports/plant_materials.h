@@ -33,7 +33,7 @@ struct PlantMaterials {
 };
 
 /// Returns whether a name matches a pattern of the shell, in upper or lower case.
-bool matches(const std::string& pattern, const std::string& name);
+bool matches_pattern(const std::string& pattern, const std::string& name);
 
 /// Writes the materials. `used` says which ones have triangles: others are left out. Throws InputError if a rule
 /// matches none of them.

@@ -180,14 +180,14 @@ std::vector<bool> single_sided(const ImportedScene& scene, const std::vector<std
   for (const std::string& pattern : patterns) {
     bool is_used = false;
     for (size_t i = 0; i < remove.size(); ++i)
-      if (matches(pattern, scene.materials[i].name)) remove[i] = is_used = true;
+      if (matches_pattern(pattern, scene.materials[i].name)) remove[i] = is_used = true;
     if (!is_used) fail({}, "the model has no material \"{}\", whose second sheets are to be removed", pattern);
   }
   return remove;
 }
 
 /// Searches meshes and objects; the results of one material are added.
-std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<bool>& remove, const Log& log) {
+std::vector<DoubleSheet> find_double_sheets(PlantGeometry& geometry, const std::vector<bool>& remove, const Log& log) {
   if (geometry.triangle_count() > kMostSearched) {
     log.info(fmt::format("double leaf sheets are searched up to {} triangles: not here", kMostSearched));
     return {};
@@ -241,7 +241,8 @@ std::string stem_of(const fs::path& scene) {
 void add_losses(const ImportedScene& scene, const PlantMaterials& materials, const std::vector<MaterialRule>& rules,
                 ImportSummary& summary) {
   const auto is_replaced = [&rules](const std::string& name) {
-    return std::ranges::any_of(rules, [&name](const MaterialRule& rule) { return matches(rule.pattern, name); });
+    return std::ranges::any_of(rules,
+                               [&name](const MaterialRule& rule) { return matches_pattern(rule.pattern, name); });
   };
   const auto add = [&](const ImportedLoss& loss) {
     if (!loss.is_surface || loss.materials.empty()) return summary.left_out.push_back(text_of(loss));
@@ -256,7 +257,7 @@ void add_losses(const ImportedScene& scene, const PlantMaterials& materials, con
   LossList colors;
   for (size_t i = 0; i < materials.rules.size(); ++i)
     if (materials.rules[i] && materials.rules[i]->mapped.empty() && scene.materials[i].color_texture.image >= 0)
-      colors.add_of(scene.materials[i].name, fmt::format("colour image {}", summary.images[i][0]));
+      colors.add_for_material(scene.materials[i].name, fmt::format("colour image {}", summary.images[i][0]));
   for (const ImportedLoss& loss : colors.all()) summary.replaced.push_back(text_of(loss));
 }
 
@@ -314,7 +315,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   if (geometry.flat_nodes > 0)
     log.warn({}, fmt::format("{} no inverse", counted(geometry.flat_nodes, "node is left out: its transform has",
                                                       "nodes are left out: their transforms have")));
-  const auto sheets = searched(geometry, single_sided(scene, options.single_sided), log);
+  const auto sheets = find_double_sheets(geometry, single_sided(scene, options.single_sided), log);
   const std::string stem = stem_of(options.scene);
   PlantImages images(scene.images, options.model, stem + "-files", log);
   const PlantMaterials materials = plant_materials(scene, used_materials(scene, geometry), options.rules, images, log);

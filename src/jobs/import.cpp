@@ -149,7 +149,7 @@ void report_replaced(const JobRun& run, const ImportSummary& summary) {
 void report_double_sheets(const JobRun& run, const ImportOptions& options, const ImportSummary& summary) {
   for (const DoubleSheet& sheet : summary.double_sheets) {
     const std::string& name = summary.materials[sheet.material];
-    const auto fits = [&name](const std::string& pattern) { return matches(pattern, name); };
+    const auto fits = [&name](const std::string& pattern) { return matches_pattern(pattern, name); };
     const std::string what = fmt::format(
         "\"{}\" has sheets that are there twice, front and back, {}; triangles of the second one: {}", name,
         sheet.apart > 0 ? fmt::format("up to {:.2g} m apart", sheet.apart) : "in the same place", sheet.triangles);

@@ -48,7 +48,7 @@ TEST(KlemsMatrices, HoldMeansOfEachPairOnEachSide) {
   const Planted planted([](const Vec3& seen, const Vec3& light) { return (2 + light.z) * (3 + seen.z) + light.x; });
   const KlemsMatrices m(planted.exported(), {500});
   EXPECT_LT(m.error(), std::numbers::pi * 12 * 2e-4 + 2e-5);  // f is 12 at most
-  EXPECT_EQ(m.unsettled(), 0u);
+  EXPECT_EQ(m.unconverged(), 0u);
   for (const size_t in : {0ul, 1ul, 9ul, 77ul, 144ul})
     for (const size_t out : {0ul, 40ul, 133ul})
       for (const bool front : {true, false})
@@ -68,7 +68,7 @@ TEST(KlemsMatrices, SayWhereALobeIsTooNarrow) {
     return seen.z * light.z > 0 ? 100 * std::exp(-1e6f * across * across) : 0;
   });
   const KlemsMatrices m(planted.exported(), {500});
-  EXPECT_GT(m.unsettled(), 100u);
+  EXPECT_GT(m.unconverged(), 100u);
   EXPECT_GT(m.error(), 1e-3);
 }
 

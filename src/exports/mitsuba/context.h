@@ -12,9 +12,9 @@
 
 namespace frond::mitsuba {
 
-/// What the writers of an export's parts share. They report what Mitsuba has no equivalent of by `lacks`, and go on
-/// with what stands for it, so that one run finds all of it; InputErrors of single materials, shapes and lights are
-/// collected in `problems`.
+/// What the writers of an export's parts share. They report what Mitsuba has no equivalent of by `report_unsupported`,
+/// and go on with what stands for it, so that one run finds all of it; InputErrors of single materials, shapes and
+/// lights are collected in `problems`.
 struct Context {
   const SceneDescription& description;
   const Registry& registry;
@@ -38,7 +38,8 @@ struct Context {
   }
   /// Reports what Mitsuba has no equivalent of: a warning if --ignore-unsupported lists its kind, otherwise an error.
   /// `instead` says what is exported in its place, and what is lost. Returns whether it is a warning.
-  bool lacks(std::string_view kind, const Location& where, const std::string& what, std::string_view instead) {
+  bool report_unsupported(std::string_view kind, const Location& where, const std::string& what,
+                          std::string_view instead) {
     const bool passes = unsupported.is_ignored(kind);
     if (passes)
       warn(where, fmt::format("{}: {}", what, instead));

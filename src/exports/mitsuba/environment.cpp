@@ -30,7 +30,7 @@ Sun sun_of(const Context& context, const Surroundings& sky) {
 }
 
 /// Returns the direction; one on the sun's disc becomes the nearest beside it.
-Vec3 beside(const Sun& sun, const Vec3& d) {
+Vec3 move_off_disc(const Sun& sun, const Vec3& d) {
   if (length(d - sun.toward) >= float(2 * std::sin(sun.radius / 2))) return d;
   const Frame frame = Frame::around(sun.toward);
   const Vec3 local = frame.to_local(d);
@@ -48,10 +48,10 @@ class Radiance {
     if (from.light->sun()) sun_ = sun_of(context, from);
   }
   SampledSpectrum at(const Vec3& d, const SampledWavelengths& lambda) const {
-    return light_.radiance({}, sun_ ? beside(*sun_, d) : d, lambda);
+    return light_.radiance({}, sun_ ? move_off_disc(*sun_, d) : d, lambda);
   }
   /// Irradiance of the disc at normal incidence: its radiance above that of the sky beside it.
-  SampledSpectrum of_sun(const SampledWavelengths& lambda) const {
+  SampledSpectrum sun_irradiance(const SampledWavelengths& lambda) const {
     const SampledSpectrum disc = light_.radiance({}, sun_->toward, lambda), sky = at(sun_->toward, lambda);
     return (disc + sky * -1) * float(sun_->projected);
   }
@@ -144,7 +144,7 @@ void write_surroundings(Context& context, Xml& xml, const std::vector<Surroundin
     if (!r.sun()) continue;
     const Element emitter(xml, "emitter", {{"type", "directional"}});
     xml.vector("direction", -r.sun()->toward);
-    const auto values = spectra.values([&](const SampledWavelengths& lambda) { return r.of_sun(lambda); });
+    const auto values = spectra.values([&](const SampledWavelengths& lambda) { return r.sun_irradiance(lambda); });
     spectra.write(xml, "irradiance", spectra.emission(values, context.exposure));
   }
   if (std::ranges::any_of(lights, [](const Surroundings& s) { return s.texels > 0; }))

@@ -19,7 +19,7 @@ std::span<const unsigned char> bytes_of(const T* data, size_t count) {
 }
 
 /// Returns the name with only characters that every file system and XML file can hold.
-std::string plain(std::string_view name) {
+std::string sanitized_name(std::string_view name) {
   std::string out;
   for (const char c : name) {
     const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
@@ -30,7 +30,7 @@ std::string plain(std::string_view name) {
 
 /// Relative to the folder, as scene.xml names files.
 std::string file_name(std::string_view subfolder, std::string_view name, std::string_view extension, uint64_t hash) {
-  return fmt::format("{}/{}-{:016x}.{}", subfolder, plain(name), hash, extension);
+  return fmt::format("{}/{}-{:016x}.{}", subfolder, sanitized_name(name), hash, extension);
 }
 
 }  // namespace

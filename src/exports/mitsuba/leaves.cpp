@@ -33,8 +33,8 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
   bool is_refused = false;
   for (const ParsedParam& given : plugin.params) {
     if (!contains(kRefused, given.name)) continue;
-    context.lacks("materials", given.where, fmt::format("\"{}\" has no equivalent in Mitsuba's frond_leaf", given.name),
-                  kStandIn);
+    context.report_unsupported("materials", given.where,
+                               fmt::format("\"{}\" has no equivalent in Mitsuba's frond_leaf", given.name), kStandIn);
     is_refused = true;
   }
   if (is_refused) return context.problems.empty() && write_stand_in(context, xml, source);
@@ -61,9 +61,9 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
       value.constant = p.real(name);
     // Images change the optical depth alone (python/frond/mitsuba.py).
     if (value.image && !number->acts_by_depth()) {
-      context.lacks("textures", given.where,
-                    fmt::format("\"{}\" from an image has no equivalent in Mitsuba's frond_leaf", name),
-                    "its mean stands for it");
+      context.report_unsupported("textures", given.where,
+                                 fmt::format("\"{}\" from an image has no equivalent in Mitsuba's frond_leaf", name),
+                                 "its mean stands for it");
       value = {mean_of(*value.map)};
     }
     has_image |= value.image != nullptr;

@@ -52,14 +52,14 @@ void add_surroundings(Context& context, const LightDescription& description, std
   ParsedPlugin plugin = description.plugin;
   const LightInfo& info = context.registry.lights.get(plugin.name, plugin.where);
   if (plugin.name == "sky" &&
-      !context.lacks(
+      !context.report_unsupported(
           "lights", plugin.where, "light \"sky\" has no equivalent in Mitsuba",
           "its sun becomes parallel light, which has no half-shadows and is not seen in mirrors, and its sky "
           "an image"))
     return;
   if (const ParsedParam* const portal = find_param(plugin.params, "portal")) {
-    context.lacks("lights", portal->where, "a light with a portal has no equivalent in Mitsuba",
-                  "the portal is left out: the light enters from everywhere");
+    context.report_unsupported("lights", portal->where, "a light with a portal has no equivalent in Mitsuba",
+                               "the portal is left out: the light enters from everywhere");
     std::erase_if(plugin.params, [](const ParsedParam& p) { return p.name == "portal"; });
   }
   const Params p(info, plugin, context.resolver);
@@ -70,9 +70,9 @@ void add_surroundings(Context& context, const LightDescription& description, std
   else if (plugin.name == "sky")
     made.texels = kSkyTexels;
   if (made.texels > 0 && context.spectra.variants() == Variants::spectral &&
-      !context.lacks("lights", p.where(made.light->sun() ? "sky" : "filename"),
-                     "images of lights are for mono and rgb variants: give one wavelength or three",
-                     "its colours are kept, with smooth spectra that Mitsuba makes of them"))
+      !context.report_unsupported("lights", p.where(made.light->sun() ? "sky" : "filename"),
+                                  "images of lights are for mono and rgb variants: give one wavelength or three",
+                                  "its colours are kept, with smooth spectra that Mitsuba makes of them"))
     return;
   if (plugin.name == "infinite" && made.texels > 0)
     context.warn(plugin.where, "Mitsuba's environment map has other texels: the image is sampled again");
@@ -101,8 +101,8 @@ void write_light(Context& context, Xml& xml, const LightDescription& description
     xml.point("position", position * float(context.units));
     return context.spectra.write(xml, "intensity", intensity(context, *light, position, {0, 0, 1}));
   }
-  context.lacks("lights", plugin.where, fmt::format("light \"{}\" has no equivalent in Mitsuba", plugin.name),
-                "it is left out");
+  context.report_unsupported("lights", plugin.where,
+                             fmt::format("light \"{}\" has no equivalent in Mitsuba", plugin.name), "it is left out");
 }
 
 }  // namespace

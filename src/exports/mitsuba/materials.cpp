@@ -32,7 +32,7 @@ constexpr Row kRows[] = {
 constexpr std::string_view kMix = "mix";
 
 /// Returns a name as an id: letters, digits and hyphens.
-std::string plain(const std::string& name) {
+std::string to_id(const std::string& name) {
   std::string out;
   for (const char c : name) out += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
   return out;
@@ -44,7 +44,7 @@ std::string plain(const std::string& name) {
 void Materials::write(Xml& xml, size_t index) {
   if (ids_.contains(index)) return;
   const MaterialDescription& material = context_.description.materials[index];
-  std::string id = material.name.empty() ? fmt::format("material-{}", index) : "material-" + plain(material.name);
+  std::string id = material.name.empty() ? fmt::format("material-{}", index) : "material-" + to_id(material.name);
   if (!names_.insert(id).second) names_.insert(id = fmt::format("{}-{}", id, index));
   // Entered first, so that a mixture that contains itself ends; the scene's check has refused it.
   ids_.emplace(index, id);
@@ -69,7 +69,7 @@ void Materials::write_plain(Xml& xml, const ParsedPlugin& plugin, const std::str
     has_image = row->write(context_, xml, source);
   } else {
     const std::string& name = context_.description.materials[index].name;
-    if (context_.lacks(
+    if (context_.report_unsupported(
             "materials", plugin.where,
             fmt::format("material \"{}\" has no equivalent in Mitsuba (--swap \"{}=diffuse,reflectance=0.5\" "
                         "replaces it)",
@@ -90,10 +90,10 @@ void Materials::write_bent(Xml& xml, const ParsedPlugin& bend, const ParsedPlugi
   if (!is_map && p.given("displacement")) height = float_value(context_, bend, p, "displacement");
   if (!is_map && !height.image) return write_plain(xml, plugin, id, index);
   if (std::ranges::any_of(parts_of(plugin), [this](size_t part) { return is_bent(part); })) {
-    context_.lacks("materials", bend.where,
-                   "a normal or bump map of a mixture whose materials have such maps too is "
-                   "not exported",
-                   "the mixture's own is left out");
+    context_.report_unsupported("materials", bend.where,
+                                "a normal or bump map of a mixture whose materials have such maps too is "
+                                "not exported",
+                                "the mixture's own is left out");
     return write_plain(xml, plugin, id, index);
   }
   with_image_.insert(index);
@@ -139,10 +139,11 @@ bool Materials::write_mix(Xml& xml, const Source& source) {
   const auto& materials = context_.description.materials;
   FloatValue amount = float_value(context_, source.plugin, source.p, "amount");
   if (std::ranges::any_of(parts, [&](size_t part) { return is_smooth(context_, materials[part].plugin); })) {
-    context_.lacks("materials", source.plugin.where,
-                   "a mixture with a smooth material is not exported: Mitsuba's blendbsdf adds the probability of a "
-                   "mirror direction to the density of the other BSDF",
-                   "the material of the larger share stands for it");
+    context_.report_unsupported(
+        "materials", source.plugin.where,
+        "a mixture with a smooth material is not exported: Mitsuba's blendbsdf adds the probability of a "
+        "mirror direction to the density of the other BSDF",
+        "the material of the larger share stands for it");
     const double share = amount.image ? mean_of(*amount.map) : amount.constant;
     amount = {share < 0.5 ? 0. : 1.};
   }

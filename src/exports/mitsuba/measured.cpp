@@ -48,7 +48,7 @@ bool write_measured(Context& context, Xml& xml, const Materials::Source& source)
   const Location where = p.where("filename");
   std::string content = read_file_bytes(path, where, "measured BSDF");
   const auto stand_in = [&](const std::string& why) {
-    return context.lacks("materials", where, why, kStandIn) && write_stand_in(context, xml, source);
+    return context.report_unsupported("materials", where, why, kStandIn) && write_stand_in(context, xml, source);
   };
   if (!is_tensor_file(content))
     return stand_in(

@@ -25,14 +25,14 @@ void check_options(mitsuba::Context& context) {
   const SceneDescription& description = context.description;
   const SceneOptions options = read_options(description, context.log);
   if (options.period)
-    context.lacks("shapes", options.period_where, "a periodic scene has no equivalent in Mitsuba",
-                  "one period is exported, with nothing around it");
+    context.report_unsupported("shapes", options.period_where, "a periodic scene has no equivalent in Mitsuba",
+                               "one period is exported, with nothing around it");
   if (!options.has_pixel_jitter)
     context.log.warn({},
                      "Option \"disablepixeljitter\" has no equivalent in Mitsuba: samples are spread over the pixel");
   if (description.has_media())
-    context.lacks("media", description.media.front().plugin.where, "participating media are not exported",
-                  "they are left out");
+    context.report_unsupported("media", description.media.front().plugin.where, "participating media are not exported",
+                               "they are left out");
 }
 
 }  // namespace

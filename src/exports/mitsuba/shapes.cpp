@@ -31,7 +31,8 @@ AffineMap product(const AffineMap& a, const AffineMap& b) {
 /// coordinates. Others are reported.
 TriangleMesh parallelograms(Context& context, const Params& p, const ShapePlacement& placement) {
   if (p.given("N"))
-    context.lacks("shapes", p.where("N"), "a bilinear mesh with normals is not exported", "they are left out");
+    context.report_unsupported("shapes", p.where("N"), "a bilinear mesh with normals is not exported",
+                               "they are left out");
   const std::vector<Vec3> corners = p.vec3s("P");
   std::vector<int> indices = p.integers("indices");
   if (indices.empty()) indices = {0, 1, 2, 3};
@@ -41,8 +42,9 @@ TriangleMesh parallelograms(Context& context, const Params& p, const ShapePlacem
     const auto corner = [&](size_t k) { return size_t(indices[i + k]); };
     const Vec3 a = corners[corner(0)], b = corners[corner(1)], c = corners[corner(2)], d = corners[corner(3)];
     if (length((a + d) - (b + c)) > 1e-6f * length(d - a))
-      context.lacks("shapes", p.where("P"), "a bilinear patch that is no parallelogram has no equivalent in Mitsuba",
-                    "two triangles stand for it");
+      context.report_unsupported("shapes", p.where("P"),
+                                 "a bilinear patch that is no parallelogram has no equivalent in Mitsuba",
+                                 "two triangles stand for it");
     const auto first = uint32_t(mesh.p.size());
     for (size_t k = 0; k < 4; ++k) {
       mesh.p.push_back(placement.to_scene.point(corners[corner(k)]));
@@ -94,8 +96,9 @@ Shapes::Parts Shapes::parts_of(const std::vector<ShapeDescription>& shapes, cons
         parts.bounds.add(shape.bounds(i).min), parts.bounds.add(shape.bounds(i).max);
     }
   for (const MovingInstance& moving : instances.moving) {
-    context_.lacks("shapes", moving.where, "what moves has no equivalent in Mitsuba, where all shapes stand still",
-                   "it stands where it is when the shutter opens");
+    context_.report_unsupported("shapes", moving.where,
+                                "what moves has no equivalent in Mitsuba, where all shapes stand still",
+                                "it stands where it is when the shutter opens");
     parts.instances.push_back({moving.object, moving.start});
   }
   for (size_t i = 0; i < instances.objects.size(); ++i)
@@ -118,8 +121,8 @@ void Shapes::add(const ShapeDescription& shape, Parts& parts) {
   if (const auto* set = std::get_if<ObjectInstances>(&made)) return add_table(*set, shape, p, parts);
   for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made)) {
     if (!std::holds_alternative<MeshPtr>(geometry)) {
-      const auto why = obstacle(shape, p);
-      if (why) context_.lacks("shapes", why->first, why->second, "it is left out");
+      const auto why = unsupported_reason(shape, p);
+      if (why) context_.report_unsupported("shapes", why->first, why->second, "it is left out");
       if (why) return;
     }
     parts.surfaces.push_back({&shape, std::move(geometry)});
@@ -128,7 +131,8 @@ void Shapes::add(const ShapeDescription& shape, Parts& parts) {
 
 /// Returns why a shape that is no mesh has no equivalent, with the place: whole spheres, disks and cylinders under a
 /// similarity have one.
-std::optional<std::pair<Location, std::string>> Shapes::obstacle(const ShapeDescription& shape, const Params& p) {
+std::optional<std::pair<Location, std::string>> Shapes::unsupported_reason(const ShapeDescription& shape,
+                                                                           const Params& p) {
   const std::string& name = shape.plugin.name;
   const Location& where = shape.plugin.where;
   if (name != "sphere" && name != "disk" && name != "cylinder")
@@ -220,9 +224,9 @@ void Shapes::write_mesh(Xml& xml, const Surface& surface, const TriangleMesh& me
   const bool has_alpha_image =
       find_param(shape.plugin.params, "alpha") && find_param(shape.plugin.params, "alpha")->type == "texture";
   if (mesh.uv.empty() && (materials_.has_image(shape.material) || has_alpha_image))
-    context_.lacks("shapes", shape.plugin.where,
-                   "a mesh with images needs texture coordinates: Mitsuba's default differs from frond's",
-                   "its images lie on it differently");
+    context_.report_unsupported("shapes", shape.plugin.where,
+                                "a mesh with images needs texture coordinates: Mitsuba's default differs from frond's",
+                                "its images lie on it differently");
   if (mesh.triangles.empty()) return;
   const Element element(xml, "shape", {{"type", "ply"}});
   const ParsedParam* file = find_param(shape.plugin.params, "filename");
@@ -242,9 +246,10 @@ void Shapes::write_quadric(Xml& xml, const Surface& surface, bool is_in_world) {
   const Params p(context_.registry.shapes.get(name, where), shape.plugin, context_.resolver);
   const double radius = p.real("radius");
   if (materials_.has_image(shape.material))
-    context_.lacks("shapes", where,
-                   fmt::format("images on a {} are not exported: its texture coordinates differ in Mitsuba", name),
-                   "they lie on it differently");
+    context_.report_unsupported(
+        "shapes", where,
+        fmt::format("images on a {} are not exported: its texture coordinates differ in Mitsuba", name),
+        "they lie on it differently");
   const AffineMap map{shape.world_from_object.rows()};
   const bool is_flipped = shape.reverse_orientation != shape.world_from_object.swaps_handedness();
   Transform::RowsDouble rows = rows_of(map);
@@ -277,14 +282,15 @@ void Shapes::write_appearance(Xml& xml, const Surface& surface) {
   const Params p(info, shape.plugin, context_.resolver);
   FloatValue alpha = float_value(context_, shape.plugin, p, "alpha");
   if (alpha.image && !std::holds_alternative<MeshPtr>(surface.geometry)) {
-    context_.lacks("shapes", p.where("alpha"), "an image as alpha is exported for meshes only",
-                   "its mean stands for it");
+    context_.report_unsupported("shapes", p.where("alpha"), "an image as alpha is exported for meshes only",
+                                "its mean stands for it");
     alpha = {mean_of(*alpha.map)};
   }
   bool is_opaque = !alpha.image && alpha.constant == 1;
   if (shape.area_light && !is_opaque) {
-    context_.lacks("lights", p.where("alpha"), "an area light with alpha is not exported: it differs in Mitsuba",
-                   "its surface is opaque");
+    context_.report_unsupported("lights", p.where("alpha"),
+                                "an area light with alpha is not exported: it differs in Mitsuba",
+                                "its surface is opaque");
     is_opaque = true;
   }
   if (is_opaque) {
@@ -301,21 +307,23 @@ void Shapes::write_appearance(Xml& xml, const Surface& surface) {
 void Shapes::write_area_light(Xml& xml, const ShapeDescription& shape) {
   const ParsedPlugin& plugin = context_.description.area_lights[*shape.area_light];
   if (plugin.name != "diffuse") {
-    context_.lacks("lights", plugin.where, fmt::format("area light \"{}\" has no equivalent in Mitsuba", plugin.name),
-                   "its surface does not emit");
+    context_.report_unsupported("lights", plugin.where,
+                                fmt::format("area light \"{}\" has no equivalent in Mitsuba", plugin.name),
+                                "its surface does not emit");
     return;
   }
   const Params p(context_.registry.area_lights.get(plugin.name, plugin.where), plugin, context_.resolver);
   const auto lacks = [&](std::string_view name, const std::string& what, std::string_view instead) {
-    context_.lacks("lights", p.where(name), what, instead);
+    context_.report_unsupported("lights", p.where(name), what, instead);
   };
   if (p.given("filename"))
-    lacks("filename", "the image of an area light is not exported", "its surface emits as a white image would");
+    report_unsupported("filename", "the image of an area light is not exported",
+                       "its surface emits as a white image would");
   if (p.boolean("twosided"))
-    lacks("twosided", "an area light of both sides has no equivalent in Mitsuba", "its front emits");
+    report_unsupported("twosided", "an area light of both sides has no equivalent in Mitsuba", "its front emits");
   if (p.given("power") && p.real("power") > 0)
-    lacks("power", "the \"power\" of an area light is not exported: \"L\" and \"scale\" are",
-          "it is ignored: the light's brightness differs");
+    report_unsupported("power", "the \"power\" of an area light is not exported: \"L\" and \"scale\" are",
+                       "it is ignored: the light's brightness differs");
   const SpectrumPtr spectrum = p.spectrum("L");
   const auto values = context_.spectra.values([&](const auto& lambda) { return spectrum->sample(lambda); });
   const Element emitter(xml, "emitter", {{"type", "area"}});

@@ -40,7 +40,8 @@ class Shapes {
 
   Parts parts_of(const std::vector<ShapeDescription>& shapes, const InstanceList& instances);
   void add(const ShapeDescription& shape, Parts& parts);
-  static std::optional<std::pair<Location, std::string>> obstacle(const ShapeDescription& shape, const Params& p);
+  static std::optional<std::pair<Location, std::string>> unsupported_reason(const ShapeDescription& shape,
+                                                                            const Params& p);
   void add_table(const ObjectInstances& set, const ShapeDescription& shape, const Params& p, Parts& parts);
   void place(const Placed& placed, const AffineMap& world, size_t depth);
   void write_surface(Xml& xml, const Surface& surface, bool is_in_world);

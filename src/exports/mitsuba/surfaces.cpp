@@ -18,15 +18,15 @@ double roughness(Context& context, const ParsedPlugin& plugin, const Params& p) 
   const auto along = [&](std::string_view name) {
     const auto texture = p.float_texture(p.given(name) ? name : "roughness");
     if (texture->is_constant()) return texture->range().min;
-    context.lacks("materials", p.where(p.given(name) ? name : "roughness"),
-                  "a roughness from a texture is not exported", "its mean stands for it");
+    context.report_unsupported("materials", p.where(p.given(name) ? name : "roughness"),
+                               "a roughness from a texture is not exported", "its mean stands for it");
     return mean_of(*texture);
   };
   double u = along("uroughness");
   const double v = along("vroughness");
   if (u != v) {
-    context.lacks("materials", plugin.where, "a roughness that differs along u and v is not exported",
-                  "the geometric mean of both stands for it");
+    context.report_unsupported("materials", plugin.where, "a roughness that differs along u and v is not exported",
+                               "the geometric mean of both stands for it");
     u = std::sqrt(std::max(0., u) * std::max(0., v));
   }
   const double alpha = p.boolean("remaproughness") ? std::sqrt(std::max(0.0, u)) : u;
@@ -57,10 +57,11 @@ bool write_transmitting(Context& context, Xml& xml, const Materials::Source& sou
   if (has_image) {
     const double most = scale * double(reflectance.map->max_value() + transmittance.map->max_value());
     if (most > 1 + 1e-5) {
-      context.lacks("materials", plugin.where,
-                    "reflectance + transmittance exceeds 1: frond scales the sum down where it does, which the export "
-                    "of images cannot",
-                    "both are scaled down everywhere");
+      context.report_unsupported(
+          "materials", plugin.where,
+          "reflectance + transmittance exceeds 1: frond scales the sum down where it does, which the export "
+          "of images cannot",
+          "both are scaled down everywhere");
       scale /= most;
     }
   } else {
@@ -84,8 +85,8 @@ bool write_conductor(Context& context, Xml& xml, const Materials::Source& source
   if (p.given("reflectance")) {
     SpectrumValue reflectance = spectrum_value(context, plugin, p, "reflectance");
     if (reflectance.image) {
-      context.lacks("materials", p.where("reflectance"), "a conductor's reflectance from an image is not exported",
-                    "its mean stands for it");
+      context.report_unsupported("materials", p.where("reflectance"),
+                                 "a conductor's reflectance from an image is not exported", "its mean stands for it");
       reflectance.constant = mean_of(*reflectance.map, context.spectra);
     }
     // As frond: eta 1 and the k that gives the reflectance at normal incidence.
@@ -119,10 +120,11 @@ bool write_dielectric(Context& context, Xml& xml, const Materials::Source& sourc
   const std::vector<double> eta = context.spectra.values([&](const auto& lambda) { return spectrum->sample(lambda); });
   const auto [least, most] = std::ranges::minmax(eta);
   if (most - least > 1e-6)
-    context.lacks("materials", p.where("eta"),
-                  fmt::format("dispersion is not exported: \"eta\" goes from {:g} to {:g}, Mitsuba takes one number",
-                              least, most),
-                  "the middle of both is taken");
+    context.report_unsupported(
+        "materials", p.where("eta"),
+        fmt::format("dispersion is not exported: \"eta\" goes from {:g} to {:g}, Mitsuba takes one number", least,
+                    most),
+        "the middle of both is taken");
   const double index_of_refraction = (least + most) / 2;
   const Element bsdf(xml, "bsdf",
                      {{"type", is_thin     ? "thindielectric"

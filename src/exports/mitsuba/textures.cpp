@@ -36,7 +36,7 @@ struct ImageFrame {
     width = image.width, height = image.height;
     name = p.file("filename").stem().string();
   }
-  bool maps_like(const ImageFrame& b) const {
+  bool has_same_mapping(const ImageFrame& b) const {
     return u_scale == b.u_scale && v_scale == b.v_scale && u_delta == b.u_delta && v_delta == b.v_delta &&
            wrap == b.wrap;
   }
@@ -90,7 +90,7 @@ void add_parts(const Context& context, const ParsedPlugin& plugin, const PluginI
 }
 
 /// Returns why the image has no equivalent, with the place; nullopt if it has one.
-std::optional<std::pair<Location, std::string>> obstacle(Context& context, const TextureDescription& image) {
+std::optional<std::pair<Location, std::string>> unsupported_reason(Context& context, const TextureDescription& image) {
   const Params p(info_of(context, image), image.plugin, context.resolver);
   if (const std::string mapping = p.string("mapping"); mapping != "uv")
     return {{p.where("mapping"), fmt::format("mapping \"{}\" has no equivalent in Mitsuba: \"uv\" has", mapping)}};
@@ -114,7 +114,7 @@ Texels texels_of(Context& context, const ParsedPlugin& plugin, const PluginInfo&
   for (const std::string_view name : names) add_parts(context, plugin, info, name, parts);
   bool is_mean = false;
   const auto mean = [&](const Location& where, const std::string& why) {
-    context.lacks("textures", where, why, kMean);
+    context.report_unsupported("textures", where, why, kMean);
     is_mean = true;
   };
   if (parts.other)
@@ -123,12 +123,12 @@ Texels texels_of(Context& context, const ParsedPlugin& plugin, const PluginInfo&
                      "\"mix\" of them have",
                      parts.other->plugin.name));
   for (const TextureDescription* image : parts.images)
-    if (const auto why = obstacle(context, *image)) mean(why->first, why->second);
+    if (const auto why = unsupported_reason(context, *image)) mean(why->first, why->second);
   if (is_mean || parts.images.empty()) return {nullptr, is_mean};
   const TextureDescription* largest = parts.images.front();
   for (const TextureDescription* image : parts.images) {
     const ImageFrame a(context, *largest), b(context, *image);
-    if (!a.maps_like(b)) {
+    if (!a.has_same_mapping(b)) {
       mean(image->plugin.where, "images with different mappings in one parameter have no equivalent in Mitsuba");
       return {nullptr, true};
     }
@@ -156,8 +156,8 @@ Image tabulated(const ImageFrame& frame, std::vector<std::string> channels, cons
 /// Images of colours have three channels, or one value.
 bool has_colors(Context& context, const Location& where) {
   if (context.spectra.variants() != Variants::spectral) return true;
-  context.lacks("textures", where, "images of colours are for mono and rgb variants: give one wavelength or three",
-                kMean);
+  context.report_unsupported("textures", where,
+                             "images of colours are for mono and rgb variants: give one wavelength or three", kMean);
   return false;
 }
 

@@ -29,13 +29,13 @@ Window window_of(const Params& p, const FilmSettings& film) {
 /// not a rotation with a scaling is reported.
 double scale_of(Context& context, const AffineMap& world_from_camera, const Location& where) {
   if (const auto square = world_from_camera.area_scale()) return std::sqrt(double(*square));
-  context.lacks("cameras", where, "a camera transform that stretches has no equivalent in Mitsuba",
-                "the image is stretched differently");
+  context.report_unsupported("cameras", where, "a camera transform that stretches has no equivalent in Mitsuba",
+                             "the image is stretched differently");
   return double(length(world_from_camera.vector({1, 0, 0})));
 }
 
 /// Returns why Mitsuba has no such pixel filter; empty if it has.
-std::string filter_obstacle(const ParsedPlugin& filter, const Params& p) {
+std::string unsupported_filter_reason(const ParsedPlugin& filter, const Params& p) {
   const double x = p.real("xradius"), y = p.real("yradius");
   const auto none = [&](std::string_view has) {
     return fmt::format("filter \"{}\" with radii {:g} and {:g} has no equivalent in Mitsuba: {}", filter.name, x, y,
@@ -74,8 +74,8 @@ void write_film(Context& context, Xml& xml, const FilmSettings& film, int sample
   xml.text("component_format", "float32");
   // Samples beyond the border contribute to its pixels, as in frond.
   if (filter.name != "box") xml.flag("sample_border", true);
-  if (const std::string why = filter_obstacle(filter, p); !why.empty()) {
-    context.lacks("films", filter.where, why, "a box filter of one pixel stands for it");
+  if (const std::string why = unsupported_filter_reason(filter, p); !why.empty()) {
+    context.report_unsupported("films", filter.where, why, "a box filter of one pixel stands for it");
     xml.element("rfilter", {{"type", "box"}});
   } else if (filter.name == "box") {
     xml.element("rfilter", {{"type", "box"}});
@@ -113,7 +113,7 @@ Transform::RowsDouble mirrored_x(Transform::RowsDouble rows, double x, double y)
 void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samples) {
   ParsedPlugin camera = context.description.camera;
   if (camera.name != "perspective" && camera.name != "orthographic") {
-    context.lacks(
+    context.report_unsupported(
         "cameras", camera.where,
         fmt::format("camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name),
         "a perspective camera of 90 degrees at its place stands for it");
@@ -121,8 +121,8 @@ void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samp
   }
   const bool is_perspective = camera.name == "perspective";
   if (context.description.camera_from_world.moves())
-    context.lacks("cameras", camera.where, "a camera that moves has no equivalent in Mitsuba",
-                  "it stands where it is when the shutter opens");
+    context.report_unsupported("cameras", camera.where, "a camera that moves has no equivalent in Mitsuba",
+                               "it stands where it is when the shutter opens");
   const Params p(context.registry.cameras.get(camera.name, camera.where), camera, context.resolver);
   const Window window = window_of(p, film);
   const double aspect = double(film.width) / film.height;
@@ -132,15 +132,16 @@ void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samp
   Transform::RowsDouble rows = rows_of(map);
   if (is_perspective) {
     if (std::abs(std::abs(window.half_width() / window.half_height()) / aspect - 1) > 1e-6)
-      context.lacks("cameras", camera.where, "pixels that are not square have no equivalent in Mitsuba",
-                    "they are square: the image shows more or less of the scene along y");
+      context.report_unsupported("cameras", camera.where, "pixels that are not square have no equivalent in Mitsuba",
+                                 "they are square: the image shows more or less of the scene along y");
     for (auto& row : rows)
       for (size_t j = 0; j < 3; ++j) row[j] /= scale;  // a perspective does not depend on the scale
     rows = mirrored_x(rows, std::copysign(1.0, window.half_width()), std::copysign(1.0, window.half_height()));
   } else {
     if (lens > 0) {
-      context.lacks("cameras", p.where("lensradius"), "an orthographic camera with a lens has no equivalent in Mitsuba",
-                    "everything is in focus");
+      context.report_unsupported("cameras", p.where("lensradius"),
+                                 "an orthographic camera with a lens has no equivalent in Mitsuba",
+                                 "everything is in focus");
       lens = 0;
     }
     // Mitsuba's film spans -1 to 1 along x.
@@ -193,8 +194,9 @@ void write_view(Context& context, Xml& xml, const FilmSettings& film, int sample
   const Params p(context.registry.integrators.get(integrator.name, integrator.where), integrator, context.resolver);
   const bool is_path = integrator.name == "path";
   if (!is_path)
-    context.lacks("integrators", integrator.where,
-                  fmt::format("integrator \"{}\" is not exported: path is", integrator.name), "path stands for it");
+    context.report_unsupported("integrators", integrator.where,
+                               fmt::format("integrator \"{}\" is not exported: path is", integrator.name),
+                               "path stands for it");
   if (is_path && p.string("termination") != "roulette")
     context.warn(p.where("termination"), "paths end by Russian roulette in Mitsuba, without bias");
   {
