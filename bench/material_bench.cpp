@@ -70,7 +70,7 @@ class Ready {
 template <class Call>
 void add(const MaterialInfo& info, const std::string& operation, const Call& call) {
   const auto run = [&info, call](benchmark::State& state) {
-    const Vec3 wo = viewer_at(static_cast<double>(state.range(0)));
+    const Vec3 wo = view_direction(static_cast<double>(state.range(0)));
     const Bsdf& bsdf = Ready::get(info, state.range(1)).bsdf();
     CallDraws draws;
     RandomStream rng(2);
@@ -125,7 +125,7 @@ class ReadyForEach {
 /// each call.
 void add_hit(const MaterialInfo& info) {
   const auto run = [&info](benchmark::State& state) {
-    const Vec3 wo = viewer_at(static_cast<double>(state.range(0)));
+    const Vec3 wo = view_direction(static_cast<double>(state.range(0)));
     const ReadyForEach& ready = ReadyForEach::get(info);
     const Hit hit = flat_hit();
     CallDraws draws;

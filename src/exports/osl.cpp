@@ -45,7 +45,7 @@ struct SurfaceTally {
 /// direction. At normal incidence the mean of cos alpha is (e + 1) / (e + 2).
 double surface_exponent(const LitMaterial& along_normal, int64_t rays, const ThreadPool& pool) {
   SurfaceTally tally{toward_light(along_normal.beam).z};
-  shoot(along_normal, 0, rays, tally, pool, {});
+  tally_rays(along_normal, 0, rays, tally, pool, {});
   if (tally.cosines.count() == 0) return 1;
   const double mean = tally.cosines.mean();
   return std::max(1.0, (2 * mean - 1) / (1 - mean));
@@ -72,20 +72,20 @@ bool measure(const ExportMaterial& material, const ExportedBsdf& bsdf, bool fron
     return LitMaterial{bsdf.material(), {front ? theta_deg : 180 - theta_deg, nm}, seed};
   };
   constexpr int kThetas = 4, kPhis = 6;
-  bool tells_surface = true;
+  bool distinguishes_surface = true;
   for (size_t i = 0; i < kAngles; ++i) {
     const GoniophotometerMeasurement whole =
         integrate_f(lit_at(angle_deg(i)), DetectorSphere(kThetas, kPhis), material.pool);
     const SpectrophotometerMeasurement parts = measure_shares(lit_at(angle_deg(i)), {.rays = rays}, material.pool);
-    tells_surface = tells_surface && parts.tells_surface;
+    distinguishes_surface = distinguishes_surface && parts.distinguishes_surface;
     const double reflected = whole.share(true).mean;
-    const double surface = parts.tells_surface ? std::min(parts.surface.mean, reflected) : 0;
+    const double surface = parts.distinguishes_surface ? std::min(parts.surface.mean, reflected) : 0;
     side.surface[i][channel] = surface;
     side.body[i][channel] = reflected - surface;
     side.transmitted[i][channel] = whole.share(false).mean;
   }
   if (channel == 0) side.exponent = surface_exponent(lit_at(0), rays, material.pool);
-  return tells_surface;
+  return distinguishes_surface;
 }
 
 /// Returns an OSL array literal: the front's angles, then the back's.
@@ -145,7 +145,7 @@ std::string osl_file(const ExportMaterial& material, const ExportRequest& reques
   const auto nm = colors_of(request);
   const int64_t rays = request.rays == 0 ? kRays : request.rays;
   std::array<SideTable, 2> sides;
-  bool tells_surface = true;
+  bool distinguishes_surface = true;
   for (size_t channel = 0; channel < nm.size(); ++channel) {
     const ExportedBsdf bsdf(material, {nm[channel]});
     if (any(ExportedBsdf::At(bsdf).bsdf().flags() & Lobes::from_light))
@@ -154,9 +154,9 @@ std::string osl_file(const ExportMaterial& material, const ExportRequest& reques
            "incident=light out",
            material.label);
     for (const bool front : {true, false})
-      tells_surface &= measure(material, bsdf, front, channel, rays, sides[front ? 0 : 1]);
+      distinguishes_surface &= measure(material, bsdf, front, channel, rays, sides[front ? 0 : 1]);
   }
-  if (!tells_surface)
+  if (!distinguishes_surface)
     material.log.warn({}, "the material does not tell its surface from its body: all that it reflects is diffuse here");
   std::array<std::array<Color, kAngles>, 2> surface;
   for (size_t s = 0; s < 2; ++s)

@@ -21,7 +21,7 @@ std::vector<float> benchmark_wavelengths(int lanes) {
   }
 }
 
-Vec3 viewer_at(double theta_deg) {
+Vec3 view_direction(double theta_deg) {
   const double theta = theta_deg * std::numbers::pi / 180;
   return {static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
 }

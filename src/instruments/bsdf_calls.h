@@ -14,7 +14,7 @@ namespace frond {
 std::vector<float> benchmark_wavelengths(int lanes);
 
 /// Returns the unit vector at theta_deg degrees from the front's normal, azimuth 0.
-Vec3 viewer_at(double theta_deg);
+Vec3 view_direction(double theta_deg);
 
 /// Arguments that vary from call to call: drawn in advance and reused cyclically.
 class CallDraws {

@@ -71,7 +71,7 @@ class Cubature {
     }
     double peak = 0;
     for (const Peak& p : peaks) peak = std::max(peak, p.density);
-    const bool settled = rules_agree(whole, part) && !part.overlooks(peak);
+    const bool settled = rules_agree(whole, part) && !part.misses_lobe(peak);
     if (settled || depth == 0) {
       if (!settled) part.error = std::max(part.largest, peak) * box.solid_angle();
       parts.push_back(part);

@@ -22,7 +22,7 @@ struct SpherePart {
   double error = 0;
 
   /// Whether the nodes have missed a lobe that has this density.
-  bool overlooks(double density) const { return density > 3 * largest; }
+  bool misses_lobe(double density) const { return density > 3 * largest; }
 };
 
 /// Integrates by adaptive Gauss quadrature; returns the parts into which it has divided the box. A part is divided

@@ -109,7 +109,7 @@ GoniophotometerMeasurement measure_f(const LitMaterial& lit, const DetectorSpher
   check_no_delta_lobe(lit);
   GoniophotometerMeasurement measurement{lit.beam, sphere, rays, {}, {}};
   PatchTally tally{&sphere, std::vector<Moments>(sphere.size())};
-  shoot(lit, 0, rays, tally, pool, progress);
+  tally_rays(lit, 0, rays, tally, pool, progress);
   measurement.caught = std::move(tally.caught);
   return measurement;
 }

@@ -81,8 +81,8 @@ class RayBlock {
 /// add(ray), add(tally) and clear(); tallies of blocks are added in their order, so that sums are bitwise equal for any
 /// number of threads.
 template <class Tally>
-void shoot(const LitMaterial& lit, int64_t first, int64_t last, Tally& total, const ThreadPool& pool,
-           const RayProgress& progress) {
+void tally_rays(const LitMaterial& lit, int64_t first, int64_t last, Tally& total, const ThreadPool& pool,
+                const RayProgress& progress) {
   const int64_t wave = int64_t{kRaysPerBlock} * 8 * pool.size();
   Tally blank = total;
   blank.clear();

@@ -21,7 +21,7 @@ struct TowardLight {
 };
 
 /// Point of the horizontal circle at this height; phi in turns.
-Vec3 on_sphere(float cosine, float sine, float turns) {
+Vec3 spherical_direction(float cosine, float sine, float turns) {
   return {sine * std::cos(2 * kPi * turns), sine * std::sin(2 * kPi * turns), cosine};
 }
 
@@ -31,7 +31,7 @@ class OvercastSky {
  public:
   TowardLight sample(Vec2 u) const {
     const float cosine = (std::sqrt(1 + 8 * u.x) - 1) / 2;  // (c + c^2) / 2 = u
-    return shining(on_sphere(cosine, std::sqrt(std::max(0.f, 1 - cosine * cosine)), u.y));
+    return shining(spherical_direction(cosine, std::sqrt(std::max(0.f, 1 - cosine * cosine)), u.y));
   }
   TowardLight at(const Vec3& w) const { return w.z > 0 ? shining(w) : TowardLight{w, 0, 0}; }
 
@@ -43,7 +43,7 @@ class SunDisc {
  public:
   TowardLight sample(Vec2 u) const {
     const float square = u.x * chord_ * chord_;  // square of the chord from the centre: uniform in area
-    const Vec3 w = on_sphere(1 - square / 2, std::sqrt(square * (1 - square / 4)), u.y);
+    const Vec3 w = spherical_direction(1 - square / 2, std::sqrt(square * (1 - square / 4)), u.y);
     return {frame_.to_world(w), radiance_, pdf_};
   }
   TowardLight at(const Vec3& w) const {
@@ -93,7 +93,7 @@ struct Batch {
 class LitSpecimen {
  public:
   explicit LitSpecimen(const PathHit& hit)
-      : bsdf_(hit.material.evaluate(flat_hit(), hit.lambda, arena_)), wo_(viewer_at(hit.theta_deg)) {
+      : bsdf_(hit.material.evaluate(flat_hit(), hit.lambda, arena_)), wo_(view_direction(hit.theta_deg)) {
     if (!bsdf_) fail({}, "the material has no surface there: nothing can be measured");
   }
 

@@ -56,16 +56,16 @@ int64_t whole_blocks(double rays, int64_t most) {
   return blocks * double(kRaysPerBlock) >= double(most) ? most : int64_t(blocks) * kRaysPerBlock;
 }
 
-int64_t first_round(const Dose& dose) {
-  return dose.standard_error > 0 ? whole_blocks(2 / dose.standard_error, dose.rays) : dose.rays;
+int64_t first_ray_count(const RayBudget& budget) {
+  return budget.standard_error > 0 ? whole_blocks(2 / budget.standard_error, budget.rays) : budget.rays;
 }
 
 /// Total number of rays expected to suffice. An early error may be inaccurate, so a round increases the total at most
 /// eightfold.
-int64_t next_round(const SpectrophotometerMeasurement& so_far, const Dose& dose) {
+int64_t next_ray_count(const SpectrophotometerMeasurement& so_far, const RayBudget& budget) {
   constexpr double kMargin = 1.02;
-  const double ratio = so_far.standard_error() / dose.standard_error, done = double(so_far.rays);
-  return whole_blocks(std::max(done + 1, done * std::min(8.0, kMargin * ratio * ratio)), dose.rays);
+  const double ratio = so_far.standard_error() / budget.standard_error, done = double(so_far.rays);
+  return whole_blocks(std::max(done + 1, done * std::min(8.0, kMargin * ratio * ratio)), budget.rays);
 }
 
 }  // namespace
@@ -74,19 +74,20 @@ double SpectrophotometerMeasurement::standard_error() const {
   return std::max({reflectance.standard_error(), transmittance.standard_error(), absorptance.standard_error()});
 }
 
-SpectrophotometerMeasurement measure_shares(const LitMaterial& lit, const Dose& dose, const ThreadPool& pool,
+SpectrophotometerMeasurement measure_shares(const LitMaterial& lit, const RayBudget& budget, const ThreadPool& pool,
                                             const RayProgress& progress) {
   check_beam(lit.beam);
-  check_rays(dose.rays);
+  check_rays(budget.rays);
   check_as_rendered(lit);
   Arena arena;
   SpectrophotometerMeasurement measurement{.beam = lit.beam};
-  measurement.tells_surface = any(bsdf_of(lit.material, lit.beam, arena).flags() & Lobes::surface) && !lit.as_rendered;
+  measurement.distinguishes_surface =
+      any(bsdf_of(lit.material, lit.beam, arena).flags() & Lobes::surface) && !lit.as_rendered;
   ShareTally tally{.lit_side = toward_light(lit.beam).z};
-  for (int64_t end = first_round(dose);; end = next_round(measurement, dose)) {
-    shoot(lit, measurement.rays, end, tally, pool, progress);
+  for (int64_t end = first_ray_count(budget);; end = next_ray_count(measurement, budget)) {
+    tally_rays(lit, measurement.rays, end, tally, pool, progress);
     measurement = measurement_of(tally, end, measurement);
-    if (end == dose.rays || measurement.standard_error() <= dose.standard_error) return measurement;
+    if (end == budget.rays || measurement.standard_error() <= budget.standard_error) return measurement;
   }
 }
 

@@ -6,7 +6,7 @@
 namespace frond {
 
 /// When a measurement ends.
-struct Dose {
+struct RayBudget {
   int64_t rays = 1'000'000;   ///< at most
   double standard_error = 0;  ///< above 0: end when those of R, T and A are at most this
 };
@@ -15,12 +15,12 @@ struct Dose {
 struct SpectrophotometerMeasurement {
   Beam beam;
   int64_t rays = 0;
-  bool tells_surface = false;   ///< whether the material's flags distinguish Rs and Rd
-  Estimate surface = {};        ///< Rs: leaves at its first event, on the lit side
-  Estimate subsurface = {};     ///< Rd: reflected after it was inside the leaf, on the lit side
-  Estimate reflectance = {};    ///< R = Rs + Rd
-  Estimate transmittance = {};  ///< T: leaves by the other side
-  Estimate absorptance = {};    ///< A = 1 - R - T; its error is that of the sum
+  bool distinguishes_surface = false;  ///< whether the material's flags distinguish Rs and Rd
+  Estimate surface = {};               ///< Rs: leaves at its first event, on the lit side
+  Estimate subsurface = {};            ///< Rd: reflected after it was inside the leaf, on the lit side
+  Estimate reflectance = {};           ///< R = Rs + Rd
+  Estimate transmittance = {};         ///< T: leaves by the other side
+  Estimate absorptance = {};           ///< A = 1 - R - T; its error is that of the sum
 
   /// The largest standard error of R, T and A.
   double standard_error() const;
@@ -31,7 +31,7 @@ struct SpectrophotometerMeasurement {
 /// alone. If a standard error is requested, rays are traced in rounds whose length follows from the error so far; the
 /// first has at least 2 / standard error rays, so that an outcome that has not occurred cannot hide a larger error.
 /// Throws InputError for fewer than 2 rays, a beam out of range, and weights that are not numbers.
-SpectrophotometerMeasurement measure_shares(const LitMaterial& lit, const Dose& dose, const ThreadPool& pool,
+SpectrophotometerMeasurement measure_shares(const LitMaterial& lit, const RayBudget& budget, const ThreadPool& pool,
                                             const RayProgress& progress = {});
 
 }  // namespace frond

@@ -13,18 +13,20 @@ namespace frond {
 namespace {
 
 /// The range with infinite ends replaced by `far`.
-Interval finite(const Interval& range, double far) { return {std::max(range.min, -far), std::min(range.max, far)}; }
-
-/// Range whose ends are swept.
-Interval ends(const Param& p) { return finite(p.range, 1000); }
-
-/// Range from which points inside are drawn.
-Interval inside(const Param& p) {
-  const auto* value = std::get_if<double>(&p.default_value);
-  return finite(p.range, std::max({1.0, value ? 2 * std::abs(*value) : 0.0, p.range.min, -p.range.max}));
+Interval finite_range(const Interval& range, double far) {
+  return {std::max(range.min, -far), std::min(range.max, far)};
 }
 
-ParsedParam given(const Param& p, std::string type, decltype(ParsedParam::values) values) {
+/// Range whose ends are swept.
+Interval swept_range(const Param& p) { return finite_range(p.range, 1000); }
+
+/// Range from which points inside are drawn.
+Interval interior_range(const Param& p) {
+  const auto* value = std::get_if<double>(&p.default_value);
+  return finite_range(p.range, std::max({1.0, value ? 2 * std::abs(*value) : 0.0, p.range.min, -p.range.max}));
+}
+
+ParsedParam make_param(const Param& p, std::string type, decltype(ParsedParam::values) values) {
   ParsedParam result;
   result.type = std::move(type);
   result.name = p.name;
@@ -33,19 +35,19 @@ ParsedParam given(const Param& p, std::string type, decltype(ParsedParam::values
 }
 
 /// A spectrum at the fraction u of the range; by default of 0 to 1.
-ParsedParam level(const Param& p, double u) {
+ParsedParam constant_spectrum(const Param& p, double u) {
   const Interval range{std::max(p.range.min, 0.0), std::min(p.range.max, 1.0)};
   const double value = std::lerp(range.min, range.max, std::clamp(u, 0.0, 1.0));
-  return given(p, "spectrum", std::vector<double>{360, value, 2500, value});
+  return make_param(p, "spectrum", std::vector<double>{360, value, 2500, value});
 }
 
 /// Discrete values of a parameter: booleans, choices. Empty for others.
 std::vector<ParsedParam> choices(const Param& p) {
   std::vector<ParsedParam> result;
   if (p.kind == ParamKind::boolean)
-    for (const bool b : {false, true}) result.push_back(given(p, "bool", std::vector<bool>{b}));
+    for (const bool b : {false, true}) result.push_back(make_param(p, "bool", std::vector<bool>{b}));
   for (const std::string_view word : p.choices)
-    result.push_back(given(p, "string", std::vector<std::string>{std::string(word)}));
+    result.push_back(make_param(p, "string", std::vector<std::string>{std::string(word)}));
   return result;
 }
 
@@ -53,11 +55,11 @@ std::vector<ParsedParam> choices(const Param& p) {
 std::vector<ParsedParam> at(const Param& p, const Interval& range, double u) {
   const double x = std::lerp(range.min, range.max, u);
   const auto vector_of = [&](std::string type, size_t n) {
-    return std::vector{given(p, std::move(type), std::vector<double>(n, x))};
+    return std::vector{make_param(p, std::move(type), std::vector<double>(n, x))};
   };
   switch (p.kind) {
     case ParamKind::integer:
-      return {given(p, "integer", std::vector<double>{std::round(x)})};
+      return {make_param(p, "integer", std::vector<double>{std::round(x)})};
     case ParamKind::real:
     case ParamKind::float_texture:
       return vector_of("float", 1);
@@ -75,7 +77,7 @@ std::vector<ParsedParam> at(const Param& p, const Interval& range, double u) {
     case ParamKind::albedo:
     case ParamKind::spectrum_texture:
     case ParamKind::unbounded:
-      return {level(p, u)};
+      return {constant_spectrum(p, u)};
     default:
       return {};
   }
@@ -85,20 +87,20 @@ bool is_share(const Param& p) { return p.kind == ParamKind::albedo || p.kind == 
 
 /// Whether a sweep varies the parameter to this end of its range, 0 or 1.
 bool is_swept_to(const Param& p, double end, const SweepOptions& options) {
-  if (at(p, inside(p), 0.5).empty()) return false;
+  if (at(p, interior_range(p), 0.5).empty()) return false;
   return options.infinite_ends || is_share(p) || std::isfinite(end == 0 ? p.range.min : p.range.max);
 }
 
 /// Value of a required parameter that nothing else gives.
-ParsedParam stand_in(const Param& p) {
+ParsedParam placeholder_value(const Param& p) {
   if (const auto options = choices(p); !options.empty()) return options.front();
-  if (p.kind == ParamKind::material && p.list) return given(p, "string", std::vector<std::string>{"one", "other"});
-  if (const auto values = at(p, inside(p), 0.5); !values.empty()) return values.front();
-  return given(p, "string", std::vector<std::string>{"one"});
+  if (p.kind == ParamKind::material && p.list) return make_param(p, "string", std::vector<std::string>{"one", "other"});
+  if (const auto values = at(p, interior_range(p), 0.5); !values.empty()) return values.front();
+  return make_param(p, "string", std::vector<std::string>{"one"});
 }
 
 std::string text(const ParsedParam& p) {
-  // A spectrum of `level`, wavelengths and values in turn, by its one value.
+  // A spectrum of `constant_spectrum`, wavelengths and values in turn, by its one value.
   if (p.type == "spectrum") return fmt::format("{} = {}", p.name, std::get<std::vector<double>>(p.values)[1]);
   return std::visit([&](const auto& values) { return fmt::format("{} = {}", p.name, fmt::join(values, " ")); },
                     p.values);
@@ -122,7 +124,7 @@ class Sweep {
       for (const ParsedParam& choice : choices(*p)) add(text(choice), {choice});
       for (const double end : {0.0, 1.0})
         if (is_swept_to(*p, end, options))
-          for (const ParsedParam& value : at(*p, ends(*p), end)) add(text(value), {value});
+          for (const ParsedParam& value : at(*p, swept_range(*p), end)) add(text(value), {value});
     }
     for (int i = 0; i < options.random_corners; ++i)
       add_random(fmt::format("corner {}", i), ends, [this] { return numbers_.uniform() < 0.5f ? 0.0 : 1.0; });
@@ -135,7 +137,7 @@ class Sweep {
   void add(std::string label, std::vector<ParsedParam> values) {
     for (const Param* p : swept_)
       if (p->required && std::ranges::find(values, p->name, &ParsedParam::name) == values.end())
-        values.push_back(stand_in(*p));
+        values.push_back(placeholder_value(*p));
     values.insert(values.end(), always_.begin(), always_.end());
     sets_.push_back({std::move(label), {std::string(info_.name), {}, std::move(values)}});
   }

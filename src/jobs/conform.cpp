@@ -126,7 +126,7 @@ class MaterialTest {
                                         .unvaried = swept_.unvaried}};
     for (const GivenWavelengths& wavelengths : in_lanes(report.wavelengths_nm)) test(wavelengths, report);
     if (run_.control.progress) run_.control.progress->finish();
-    report.level = judge(report.findings, report.effort.false_alarm_rate);
+    report.level = apply_false_alarm_rate(report.findings, report.effort.false_alarm_rate);
     return report;
   }
 

@@ -293,8 +293,9 @@ Result fit_one(const JobRun& run) {
   std::vector<Table> tables = fit_tables(report);
   std::string text = fit_text(report);
   if (args.given("directions")) {
-    tables.push_back(compare_directions(
-        run, args.text("directions"), fit_words(report, std::string(noiseless_model(run.session().registry()).name))));
+    tables.push_back(
+        compare_directions(run, args.text("directions"),
+                           fitted_material_text(report, std::string(noiseless_model(run.session().registry()).name))));
     text += directions_text(tables.back());
   }
   return {.tables = std::move(tables),

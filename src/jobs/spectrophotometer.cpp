@@ -52,8 +52,8 @@ Table table_of(std::span<const LabelledMeasurement> measurements) {
     const auto& [material, r] = measurement;
     table.add("theta_deg", r.beam.theta_deg);
     add_light(table, r.beam);
-    const auto is_known = [&, tells_surface = r.tells_surface](const Share& s) {
-      return !s.is_optional || tells_surface;
+    const auto is_known = [&, distinguishes_surface = r.distinguishes_surface](const Share& s) {
+      return !s.is_optional || distinguishes_surface;
     };
     for (const Share& s : kShares) table.add(s.name, is_known(s) ? (r.*s.value).mean : kNone);
     for (const Share& s : kShares)
@@ -84,12 +84,14 @@ std::string text_of(const std::vector<LabelledMeasurement>& measurements, size_t
 }
 
 /// Warns if the largest number of rays was reached before the requested standard error.
-void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vector<LabelledMeasurement>& measurements) {
-  const auto missed = std::ranges::count_if(
-      measurements, [&](const LabelledMeasurement& r) { return r.measurement.standard_error() > dose.standard_error; });
-  if (dose.standard_error > 0 && missed > 0)
+void warn_where_not_reached(const JobRun& run, const RayBudget& budget,
+                            const std::vector<LabelledMeasurement>& measurements) {
+  const auto missed = std::ranges::count_if(measurements, [&](const LabelledMeasurement& r) {
+    return r.measurement.standard_error() > budget.standard_error;
+  });
+  if (budget.standard_error > 0 && missed > 0)
     run.log().warn({}, fmt::format("{} of {} measurements reached {} rays before a standard error of {}", missed,
-                                   measurements.size(), dose.rays, dose.standard_error));
+                                   measurements.size(), budget.rays, budget.standard_error));
 }
 
 /// The job. The chart is checked before the first ray.
@@ -99,7 +101,7 @@ Result spectrophotometer(const JobRun& run) {
   // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;
   const int64_t by_default = run.args.given("se") ? kMostRays : kRays;
-  const Dose dose{run.args.given("rays") ? run.args.count("rays") : by_default, run.args.real("se")};
+  const RayBudget budget{run.args.given("rays") ? run.args.count("rays") : by_default, run.args.real("se")};
   const MaterialsUnderTest tested(run);
   if (run.args.given("plot"))
     check_shares_chart(tested.materials().size(), tested.angles_deg().size(), tested.lights().size());
@@ -107,9 +109,9 @@ Result spectrophotometer(const JobRun& run) {
   for (size_t i = 0; i < tested.size(); ++i)
     measurements.push_back(
         {tested.material(i).label(),
-         measure_shares(tested.lit_material(i), dose, run.session().pool(), tested.progress(i, dose.rays))});
+         measure_shares(tested.lit_material(i), budget, run.session().pool(), tested.progress(i, budget.rays))});
   if (run.control.progress) run.control.progress->finish();
-  warn_where_not_reached(run, dose, measurements);
+  warn_where_not_reached(run, budget, measurements);
   if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(measurements));
   return {.tables = {table_of(measurements)},
           .notes = tested.notes("spectrophotometer"),

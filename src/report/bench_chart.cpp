@@ -42,7 +42,7 @@ void add_row(Panel& panel, const std::vector<const BenchMeasurement*>& row, Wort
     if (std::isnan(ns)) continue;
     logs += std::log(ns), ++count;
     panel.series.push_back(line("", kColor, 2, Dash::solid, {{ns - error, y}, {ns + error, y}}));
-    panel.series.push_back(marks("", kColor, series_mark(place_in(angles, r->theta_deg)), 5, {{ns, y}}));
+    panel.series.push_back(marks("", kColor, series_mark(index_of(angles, r->theta_deg)), 5, {{ns, y}}));
     if (row.size() > 1) continue;
     panel.series.push_back({"", "", 0, {}, Mark::none, 0, {{ns, y - kBelow}}, time_text(ns)});
   }

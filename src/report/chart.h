@@ -121,7 +121,7 @@ auto distinct(const Items& items, const Get& get) {
 
 /// Returns the index of `value` in `values`; values.size() if absent.
 template <class T>
-size_t place_in(const std::vector<T>& values, const T& value) {
+size_t index_of(const std::vector<T>& values, const T& value) {
   return size_t(std::ranges::find(values, value) - values.begin());
 }
 

@@ -101,7 +101,7 @@ std::string broken_text(const ConformReport& report) {
 }
 
 /// Whether the material could be created for at least one set of parameters.
-bool is_there(const ConformReport& report) {
+bool was_created(const ConformReport& report) {
   return std::ranges::any_of(report.findings, [](const Finding& f) { return f.law != Law::parameters; });
 }
 
@@ -148,7 +148,7 @@ std::string conform_text(const ConformReport& r) {
       r.material, counted(r.parameters.sets, "set of parameters", "sets of parameters"),
       fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), samples_text(r), r.effort.seed,
       counted(r.findings.size(), "test"), r.effort.false_alarm_rate, r.level, 100 * kPower);
-  if (r.all_hold() && !is_there(r)) text += "The surface is invisible: it has no BSDF to test.\n\n";
+  if (r.all_hold() && !was_created(r)) text += "The surface is invisible: it has no BSDF to test.\n\n";
   const double factor = detectable_factor(r.findings);
   text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", "", "law", "", "worst p", "");
   for (const LawSummary& law : summarise(r.findings)) {
@@ -161,7 +161,7 @@ std::string conform_text(const ConformReport& r) {
 
 std::string conform_verdict(const ConformReport& r) {
   if (!r.all_hold()) return "Broken: " + broken_text(r) + ".";
-  if (!is_there(r)) return "Only the law of parameters was tested; it holds.";
+  if (!was_created(r)) return "Only the law of parameters was tested; it holds.";
   return fmt::format("No law was found broken, at {}.", scope_text(r));
 }
 

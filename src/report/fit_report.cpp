@@ -32,7 +32,7 @@ constexpr double kGoTogether = 0.9;
 bool is_prospect(const leaf::FitResult& r) { return r.params.absorption_tables == leaf::AbsorptionTables::prospect; }
 
 /// Returns all parameters that a scene file states; those of bifacial leaves are the last.
-std::vector<const LeafNumber*> said(const FitReport& report) {
+std::vector<const LeafNumber*> stated_numbers(const FitReport& report) {
   std::vector<const LeafNumber*> all;
   for (const bool only_bifacial : {false, true})
     for (const LeafNumber& n : leaf::leaf_parameters())
@@ -43,7 +43,7 @@ std::vector<const LeafNumber*> said(const FitReport& report) {
 }
 
 /// Returns the names of the parameters that the data do not determine.
-std::vector<std::string> not_told(const FitReport& report) {
+std::vector<std::string> undetermined_parameters(const FitReport& report) {
   std::vector<std::string> names;
   for (const FittedNumber& n : report.result.numbers)
     if (!n.is_fixed && !n.is_identified()) names.emplace_back(n.variable->name);
@@ -51,14 +51,14 @@ std::vector<std::string> not_told(const FitReport& report) {
 }
 
 /// Returns what the reader must know of an estimate; empty: nothing.
-std::string note(const FittedNumber& n) {
+std::string estimate_note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
   if (n.is_at_bound) return "at a limit of its range: not determined by the data";
   return n.is_identified() ? "" : "not determined by the data";
 }
 
 /// Whether the leaf's surface alone reflects more than was measured in the band.
-bool is_below_reach(const leaf::MisfitBand& band) { return !band.is_t && band.measured < band.lowest_r; }
+bool is_below_surface_reflectance(const leaf::MisfitBand& band) { return !band.is_t && band.measured < band.lowest_r; }
 
 /// Table of the bands that the fitted leaf misses.
 std::string misfit_text(const FitReport& report) {
@@ -95,22 +95,23 @@ std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
 std::string fit_scene(const FitReport& report, const std::string& name) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("# Fitted to {} by frond fit: {}.\n", report.source, rmse_text(result));
-  if (const auto names = not_told(report); !names.empty())
+  if (const auto names = undetermined_parameters(report); !names.empty())
     text += fmt::format("# Not determined by the data, so no measurement: {}.\n", fmt::join(names, ", "));
   text += name.empty() ? fmt::format("Material \"{}\"", report.material)
                        : fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"", name, report.material);
   text += fmt::format(" \"string specimen\" \"{}\"\n", result.specimen->name);
-  for (const LeafNumber* n : said(report))
+  for (const LeafNumber* n : stated_numbers(report))
     text += fmt::format("    \"float {}\" {:.6g}\n", n->name, n->value(result.params));
   if (is_prospect(result)) text += "    \"string absorption\" \"prospect\"\n";
   if (result.params.sieve_and_detour) text += "    \"bool sieve\" true\n";
   return text;
 }
 
-std::string fit_words(const FitReport& report, const std::string& material) {
+std::string fitted_material_text(const FitReport& report, const std::string& material) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("{},specimen={}", material, result.specimen->name);
-  for (const LeafNumber* n : said(report)) text += fmt::format(",{}={:.6g}", n->name, n->value(result.params));
+  for (const LeafNumber* n : stated_numbers(report))
+    text += fmt::format(",{}={:.6g}", n->name, n->value(result.params));
   if (is_prospect(result)) text += ",absorption=prospect";
   if (result.params.sieve_and_detour) text += ",sieve=true";
   return text;
@@ -130,7 +131,7 @@ std::string fit_text(const FitReport& report) {
                       result.params.sieve_and_detour ? "with" : "without");
   for (const FittedNumber& n : result.numbers)
     text += fmt::format("  {:<20} {:>10.4g} {:<8}{}{}\n", n.variable->name, n.value, n.variable->unit,
-                        n.is_identified() ? fmt::format("+- {:.2g} %", 100 * n.relative_error) : "", note(n));
+                        n.is_identified() ? fmt::format("+- {:.2g} %", 100 * n.relative_error) : "", estimate_note(n));
   for (const LeafNumber& n : leaf::leaf_parameters())
     if (!n.follows.empty() && (n.value(result.params) > 0 || !n.only_with))
       text += fmt::format("  {} {:.4g} follows {}, which absorbs alike;\n", n.name, n.value(result.params), n.follows);
@@ -183,7 +184,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
     spectra.add("T_fitted", result.fitted[i].t);
     spectra.add_flag("outlier", result.fitted[i].is_outlier);
   }
-  for (const LeafNumber* n : said(report))
+  for (const LeafNumber* n : stated_numbers(report))
     leaf.add("name", std::string(n->name)), leaf.add("value", n->value(result.params));
   for (const FittedNumber& n : result.numbers) {
     numbers.add("name", std::string(n.variable->name));
@@ -208,7 +209,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
     misfits.add("measured", band.measured);
     misfits.add("fitted", band.fitted);
     misfits.add("lowest_R", band.lowest_r);
-    misfits.add_flag("below_reach", is_below_reach(band));
+    misfits.add_flag("below_reach", is_below_surface_reflectance(band));
   }
   for (const NamedBand& band : kBands) {
     const auto rmse = leaf::rmse_between(report.request, result, band.nm);
@@ -243,7 +244,7 @@ void add_misfits(Panel& panel, const FitReport& report, bool is_t, const Series&
 /// Adds the lowest R where it is above the measured R: to cover the curves. Bands of one wavelength are a mark.
 void add_lowest(Panel& panel, const FitReport& report, double theta_deg) {
   for (const leaf::MisfitBand& band : report.result.misfits) {
-    if (band.theta_deg != theta_deg || !is_below_reach(band)) continue;
+    if (band.theta_deg != theta_deg || !is_below_surface_reflectance(band)) continue;
     panel.series.push_back({"",
                             kSeriesColors[2],
                             2,
@@ -259,7 +260,7 @@ std::vector<Series> legend_of(const FitReport& report) {
   std::vector<Series> entries{marks("measured", kSeriesColors[0], Mark::disk, 1.8)};
   const auto& misfits = report.result.misfits;
   if (!misfits.empty()) entries.push_back(line(fmt::format("off by more than {:.2g}", leaf::kMisfit), "#f0b27a", 8));
-  if (std::ranges::any_of(misfits, is_below_reach))
+  if (std::ranges::any_of(misfits, is_below_surface_reflectance))
     entries.push_back(
         {"lowest R of this structure, with any absorption", kSeriesColors[2], 2, Dash::dashed, Mark::square, 2.5});
   return entries;

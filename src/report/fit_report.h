@@ -21,7 +21,7 @@ struct FitReport {
 /// name, a `MakeNamedMaterial` directive.
 std::string fit_scene(const FitReport& report, const std::string& name = {});
 /// Returns the fitted leaf as text such as `leaf_solved,specimen=maize,thickness=2e-4`.
-std::string fit_words(const FitReport& report, const std::string& material);
+std::string fitted_material_text(const FitReport& report, const std::string& material);
 /// Returns text for a terminal: errors by band, parameters with errors, strong correlations, undetermined parameters.
 std::string fit_text(const FitReport& report);
 /// Returns errors, and results that are not parameters of the leaf.

@@ -59,7 +59,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
       std::ranges::any_of(measurements, [](const auto& r) { return r.measurement.is_integrated(); });
   // An integrated f is a line; a measured f of the same material is drawn as points.
   const auto series = [&](const LabelledPatches& r, const std::string& label, const std::string& color) -> Series {
-    const size_t m = place_in(materials, r.material);
+    const size_t m = index_of(materials, r.material);
     const bool exact = r.measurement.is_integrated();
     return {label, color, exact || !some_integrated ? 1.5 : 0, Dash(m), exact ? Mark::none : kMarks[m], 2.5};
   };
@@ -70,7 +70,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
       if (angles.size() == 1) panel.width *= 2;
       for (const LabelledPatches& r : measurements) {
         if (r.measurement.beam.theta_deg != theta_deg) continue;
-        panel.series.push_back(series(r, "", kSeriesColors[place_in(lights, label_of(r.measurement.beam))]));
+        panel.series.push_back(series(r, "", kSeriesColors[index_of(lights, label_of(r.measurement.beam))]));
         panel.series.back().points = plane_points(r.measurement, reflected);
       }
     }

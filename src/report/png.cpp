@@ -16,12 +16,12 @@ namespace {
 
 /// Returns a function of librsvg, which is loaded on first use, or of its dependencies Cairo and GLib.
 template <class Function>
-Function* late(const char* name) {
+Function* librsvg_function(const char* name) {
   static const SharedObject library(FROND_RSVG_FILE, "librsvg", SharedObject::Binding::lazy);
   if (Function* function = library.find<Function>(name)) return function;
   fail({}, "librsvg \"{}\" has no function {}", FROND_RSVG_FILE, name);
 }
-#define LATE(name) late<decltype(::name)>(#name)
+#define LATE(name) librsvg_function<decltype(::name)>(#name)
 
 cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count) {
   static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(bytes), count);

@@ -111,7 +111,7 @@ class PanelDrawing {
   PanelDrawing(const Panel& panel, double left, double top, size_t id)
       : p_(panel),
         left_(left + (panel.is_map ? 8 : 78)),
-        right_(left + panel.width - std::max(20.0, room_of_ends(panel))),
+        right_(left + panel.width - std::max(20.0, end_label_width(panel))),
         top_(top + (panel.title.empty() ? 12 : 32)),
         bottom_(top + panel.height - (panel.is_map ? 8 : 46)),
         x_(with_range(panel.x, panel.series, &ChartPoint::x)),
@@ -165,7 +165,7 @@ class PanelDrawing {
   }
 
   /// Returns the width that the labels at the ends of curves need.
-  static double room_of_ends(const Panel& panel) {
+  static double end_label_width(const Panel& panel) {
     constexpr double kMost = 0.45;  // of the panel
     double room = 0;
     for (const Series& s : panel.series) {
@@ -203,7 +203,8 @@ class PanelDrawing {
     std::string out;
     for (const Label& l : labels) {
       const auto lines = lines_of(l.series->end);
-      const double x = right_ + kLeader, y = l.middle + (lines.size() > 1 ? -2 : 5), room = room_of_ends(p_) - kLeader;
+      const double x = right_ + kLeader, y = l.middle + (lines.size() > 1 ? -2 : 5),
+                   room = end_label_width(p_) - kLeader;
       out += stroke(fmt::format("M{:.2f},{:.2f}L{:.2f},{:.2f}", l.x + 6, l.y, x - 5, l.middle), l.series->color, 0.6);
       out += text_at(x, y, lines[0], fmt::format("{} fill='{}'", kStart, l.series->color), room);
       if (lines.size() > 1)

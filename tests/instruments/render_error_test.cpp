@@ -67,7 +67,7 @@ TEST(RenderError, CountsThePixelsThatAreUsed) {
 /// Over the true mean, 0.3: noise of either method leaves the relative figures what they are.
 TEST(RenderError, InUnitsOfTheReferencesMeanIsRelative) {
   const Images p = images(0.04, 0.05, 0.03);
-  const RenderError e = in_units_of(mean_of({p.r1, p.r2}), error_of(p));
+  const RenderError e = in_unit(mean_of({p.r1, p.r2}), error_of(p));
   const double bias = 0.04 * 0.04 / 2, noise = 0.05 * 0.05, mean_squared = 0.3 * 0.3;
   expect_near(e.bias, bias / mean_squared);
   expect_near(e.noise, noise / mean_squared);

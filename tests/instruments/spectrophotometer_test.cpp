@@ -39,7 +39,7 @@ TEST(Spectrophotometer, FindsTheReflectanceAndTransmittanceOfALambertianSurface)
     EXPECT_GT(p_of(r.reflectance, 0.3), level) << theta;
     EXPECT_GT(p_of(r.transmittance, 0.55), level) << theta;
     EXPECT_GT(p_of(r.absorptance, 0.15), level) << theta;
-    EXPECT_FALSE(r.tells_surface);
+    EXPECT_FALSE(r.distinguishes_surface);
   }
 }
 
@@ -80,7 +80,7 @@ TEST(Spectrophotometer, SurfaceReflectanceOfALeafIsFresnels) {
         name, name == "abm" ? std::vector<ParsedParam>() : std::vector<ParsedParam>{word("tablemethod", "solve")}, 551);
     for (const double theta : angles) {
       const auto m = measure(leaf.under(theta), 50000);
-      ASSERT_TRUE(m.tells_surface);
+      ASSERT_TRUE(m.distinguishes_surface);
       const double fresnel =
           leaf::fresnel(std::abs(std::cos(theta * std::numbers::pi / 180)), 1 / leaf::constants_at(551).n_cuticle)
               .reflectance;
@@ -163,9 +163,9 @@ TEST(Spectrophotometer, TheSameBitsOnAnyNumberOfThreads) {
 
 TEST(Spectrophotometer, StopsAtTheStandardErrorAskedFor) {
   const Prepared leaf("abm", {}, 551);
-  const Dose dose{.rays = 100'000'000, .standard_error = 5e-4};
-  const auto m = measure_shares(leaf.under(8), dose, kPool);
-  EXPECT_LE(m.standard_error(), dose.standard_error);
+  const RayBudget budget{.rays = 100'000'000, .standard_error = 5e-4};
+  const auto m = measure_shares(leaf.under(8), budget, kPool);
+  EXPECT_LE(m.standard_error(), budget.standard_error);
   // A is about 0.776: sqrt(A (1 - A) / rays) = 5e-4 takes 695,000 rays; rounds are whole blocks and a margin.
   EXPECT_GT(m.rays, 600'000);
   EXPECT_LT(m.rays, 900'000);

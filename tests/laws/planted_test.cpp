@@ -24,7 +24,7 @@ Findings findings(const MaterialInfo& info, const Claims& claims = {},
   Findings found =
       examine(info, std::span(sets).first(1),
               {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = effort});
-  judge(found, kFalseAlarmRate);
+  apply_false_alarm_rate(found, kFalseAlarmRate);
   return found;
 }
 

@@ -23,7 +23,7 @@ const SampledWavelengths kThree = GivenWavelengths({608, 551, 455}).sample(0);
 
 Findings judged(const Bsdf& bsdf, const ExaminationEffort& effort, const SampledWavelengths& lambda = kThree) {
   Findings findings = examine(bsdf, lambda, {}, effort, "planted");
-  judge(findings, effort.false_alarm_rate);
+  apply_false_alarm_rate(findings, effort.false_alarm_rate);
   return findings;
 }
 

@@ -83,7 +83,7 @@ Findings expect_lawful(const MaterialInfo& info, std::span<const ParameterSet> s
   const Setup setup(wavelengths);
   Findings findings =
       examine(info, sets, {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = effort});
-  judge(findings, kFalseAlarmRate);
+  apply_false_alarm_rate(findings, kFalseAlarmRate);
   EXPECT_THAT(broken_laws(findings), ::testing::IsEmpty()) << failures_text(findings);
   return findings;
 }
@@ -318,7 +318,7 @@ class Halves {
     Findings findings = examine(
         info_, std::span(sets_).first(1),
         {.preparation = setup.preparation, .resolver = resolver_, .claims = claims, .effort = {.samples = 4000}});
-    judge(findings, kFalseAlarmRate);
+    apply_false_alarm_rate(findings, kFalseAlarmRate);
     return broken_laws(findings);
   }
 

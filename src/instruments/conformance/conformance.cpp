@@ -38,12 +38,12 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
       });
       for (Finding& f : std::span(findings).subspan(first)) f.theta_deg = side > 0 ? angle_deg : 180 - angle_deg;
     }
-  run_guarded(where, findings, [&] { check_awkward_values(bsdf, where, effort.seed, findings); });
+  run_guarded(where, findings, [&] { check_edge_cases(bsdf, where, effort.seed, findings); });
   if (claims.reciprocal) run_guarded(where, findings, [&] { check_reciprocity(bsdf, where, effort, findings); });
   return findings;
 }
 
-double judge(Findings& findings, double false_alarm_rate) {
+double apply_false_alarm_rate(Findings& findings, double false_alarm_rate) {
   size_t tests = 0;
   for (const Finding& f : findings) tests += f.statistical ? 1 : 0;
   // Exact tests have p = 0 or 1 and raise no false alarms, so only statistical ones share the rate.

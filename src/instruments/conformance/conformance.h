@@ -84,7 +84,7 @@ struct Measure {
   double value = kNone, standard_error = kNone;
   /// The smallest error found with the probability kPower by a test at this level; may be empty.
   std::function<double(double level)> detectable_at = {};
-  double detectable = kNone;  ///< set by `judge`
+  double detectable = kNone;  ///< set by `apply_false_alarm_rate`
 };
 
 /// The outcome of one test of one law.
@@ -94,7 +94,7 @@ struct Finding {
   std::string message;  ///< the comparison, with its numbers
   double p_value = 1;   ///< of a statistical test; 0 or 1 for any other
   bool statistical = false;
-  bool passed = true;                              ///< set by `judge`
+  bool passed = true;                              ///< set by `apply_false_alarm_rate`
   std::shared_ptr<const SphereMap> map = nullptr;  ///< if ExaminationEffort requests maps and the law has directions
   Measure measure = {};
   std::string parameters = {};            ///< label of the set of parameters
@@ -119,17 +119,17 @@ struct ExaminationEffort {
   /// The law of energy draws further samples, up to kMostRounds times `samples`, until it would find this excess over 1
   /// with the probability kPower. 0: no further samples.
   double excess = 0.05;
-  double false_alarm_rate = 1e-6;  ///< of a report, as `judge` takes it
+  double false_alarm_rate = 1e-6;  ///< of a report, as `apply_false_alarm_rate` takes it
 };
 inline constexpr int kMostRounds = 50;
 
-/// Tests all laws of a BSDF. `where` is the start of each finding's text. Call `judge` afterwards.
+/// Tests all laws of a BSDF. `where` is the start of each finding's text. Call `apply_false_alarm_rate` afterwards.
 Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims,
                  const ExaminationEffort& effort, const std::string& where);
 
 /// Sets `passed` of all findings; returns the p-value below which a finding fails. `false_alarm_rate`: probability that
 /// any law is reported broken although all hold, over all findings together.
-double judge(Findings& findings, double false_alarm_rate);
+double apply_false_alarm_rate(Findings& findings, double false_alarm_rate);
 
 /// Summary of all findings on one law.
 struct LawSummary {

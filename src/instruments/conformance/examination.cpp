@@ -78,12 +78,12 @@ void Examination::integrate_pdf() {
     pdf_error += total_error(parts);
     in_bin.emplace_back(std::move(parts));
   }
-  bound_overlooked();
+  bound_missed_lobes();
 }
 
 /// The quadrature knows the pilot only, so the share of the other samples in lobes that it has overlooked is the mass
 /// of those lobes.
-void Examination::bound_overlooked() {
+void Examination::bound_missed_lobes() {
   constexpr double kAlarm = 1e-6;  // probability that the true mass is larger
   const auto part_of = [this](const BsdfSample& sample) -> const SpherePart* {
     const SpherePoint point(sample.wi);
@@ -96,7 +96,7 @@ void Examination::bound_overlooked() {
   for (const BsdfSample& sample : samples) {
     if (is_specular(sample)) continue;
     const SpherePart* part = part_of(sample);
-    if (part && part->overlooks(bsdf.pdf(wo, sample.wi))) ++count;
+    if (part && part->misses_lobe(bsdf.pdf(wo, sample.wi))) ++count;
   }
   overlooked = boost::math::gamma_q_inv(static_cast<double>(count + 1), kAlarm) / static_cast<double>(drawn);
 }
@@ -105,7 +105,7 @@ std::vector<BsdfSample> Examination::draw(int64_t count, uint64_t seed) const {
   std::vector<BsdfSample> result;
   result.reserve(static_cast<size_t>(count));
   for (int64_t i = 0; i < count; ++i)
-    if (const auto s = draw_once(bsdf, wo, hash_key(seed, i))) result.push_back(*s);
+    if (const auto s = sample_once(bsdf, wo, hash_key(seed, i))) result.push_back(*s);
   return result;
 }
 

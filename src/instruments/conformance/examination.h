@@ -78,7 +78,7 @@ struct Examination {
  private:
   std::vector<BsdfSample> draw(int64_t count, uint64_t seed) const;
   void integrate_pdf();
-  void bound_overlooked();
+  void bound_missed_lobes();
   void probe(uint64_t seed);
 };
 
@@ -99,7 +99,7 @@ struct EqualityTest {
 inline constexpr double kEnoughForNormal = 100;
 
 /// One call of `sample` with numbers and a stream from `key`.
-inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
+inline std::optional<BsdfSample> sample_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
   check_stop();
   RandomStream numbers(hash_key(key, 0)), stream(hash_key(key, 1));
   const float uc = numbers.uniform(), u = numbers.uniform(), v = numbers.uniform();
@@ -114,21 +114,21 @@ inline SampledSpectrum f_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, 
 }
 
 /// Whether two values are equal apart from rounding.
-inline bool near(float a, float b) {
+inline bool is_close(float a, float b) {
   return std::abs(a - b) <= static_cast<float>(kRounding) * std::max(std::abs(a), std::abs(b));
 }
 
-inline bool near(const SampledSpectrum& a, const SampledSpectrum& b) {
+inline bool is_close(const SampledSpectrum& a, const SampledSpectrum& b) {
   for (int i = 0; i < kLanes; ++i)
-    if (!near(a[i], b[i])) return false;
+    if (!is_close(a[i], b[i])) return false;
   return true;
 }
 
 /// Finite and not negative.
-inline bool is_proper(float x) { return std::isfinite(x) && x >= 0; }
-inline bool is_proper(const SampledSpectrum& s) {
+inline bool is_valid_value(float x) { return std::isfinite(x) && x >= 0; }
+inline bool is_valid_value(const SampledSpectrum& s) {
   for (int i = 0; i < kLanes; ++i)
-    if (!is_proper(s[i])) return false;
+    if (!is_valid_value(s[i])) return false;
   return true;
 }
 
@@ -165,7 +165,7 @@ void check_values(const Examination& s, Findings& findings);
 /// `lambda`: the wavelengths of the BSDF, of which a lane in use is retired.
 void check_retired_lanes(const Bsdf& bsdf, const SampledWavelengths& lambda, const std::string& where, uint64_t seed,
                          Findings& findings);
-void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
+void check_edge_cases(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
 void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
 
 /// Runs `test`. A logic error, a runtime error or an object that a BSDF or a material throws becomes a finding of
@@ -206,11 +206,10 @@ class Verdict {
 
   bool failed() const { return finding_.p_value == 0; }
   /// Begins a case: a direction or a pair of them.
-  void begin() { ++cases_, case_failed_ = false; }
+  void begin_case() { ++cases_, case_failed_ = false; }
   /// Begins a case and sets the direction that the following expectations refer to.
-  void at(const Vec3& wi) {
-    begin();
-    if (!series_) return;
+  void begin_case_at(const Vec3& wi) {
+    begin_case() if (!series_) return;
     bin_ = series_->bins.find(wi);
     asked_[bin_] += 1;
   }

@@ -39,7 +39,7 @@ std::array<Outgoing, kLanes> mean_weights(const Examination& s, int64_t further,
           power_weight(s, sample, lane) / static_cast<double>(s.drawn);
   }
   for (int64_t i = 0; i < further; ++i)
-    if (const auto sample = draw_once(s.bsdf, s.wo, hash_key(seed, i))) add(*sample);
+    if (const auto sample = sample_once(s.bsdf, s.wo, hash_key(seed, i))) add(*sample);
   for (size_t lane = 0; lane < kLanes; ++lane) {
     moments[lane].add_zeros(s.drawn + further - moments[lane].count());
     result[lane].all = moments[lane].estimate();

@@ -51,12 +51,12 @@ void check_agreement(const Examination& s, Findings& findings) {
   bool pdf_agrees = true;
   for (const BsdfSample& sample : s.samples) {
     if (any(sample.flags & Lobes::specular)) continue;
-    verdict.begin();
+    verdict.begin_case();
     const float pdf = s.bsdf.pdf(s.wo, sample.wi);
     const SampledSpectrum f = f_once(s.bsdf, s.wo, sample.wi, 0);
-    pdf_agrees = pdf_agrees && near(sample.pdf, pdf);
-    verdict.expect(near(sample.pdf, pdf), "wi {}: the sample's pdf is {}, pdf() {}", sample.wi, sample.pdf, pdf);
-    verdict.expect(near(sample.f, f), "wi {}: the sample's f is {}, f() {}", sample.wi, sample.f, f);
+    pdf_agrees = pdf_agrees && is_close(sample.pdf, pdf);
+    verdict.expect(is_close(sample.pdf, pdf), "wi {}: the sample's pdf is {}, pdf() {}", sample.wi, sample.pdf, pdf);
+    verdict.expect(is_close(sample.f, f), "wi {}: the sample's f is {}, f() {}", sample.wi, sample.f, f);
     if (s.maps) map.add(sample, f, pdf);
   }
   findings.push_back(verdict.finding());
@@ -67,7 +67,7 @@ void check_flags(const Examination& s, Findings& findings) {
   Verdict verdict(Law::flags, s);
   const Lobes all = s.bsdf.flags();
   for (const BsdfSample& sample : s.samples) {
-    verdict.at(sample.wi);
+    verdict.begin_case_at(sample.wi);
     const bool back = any(sample.flags & Lobes::reflection), through = any(sample.flags & Lobes::transmission);
     verdict.expect((sample.flags & all) == sample.flags, "a sample has flags {:#x}, the BSDF {:#x}",
                    static_cast<int>(sample.flags), static_cast<int>(all));
@@ -78,7 +78,7 @@ void check_flags(const Examination& s, Findings& findings) {
                    "a sample is neither diffuse nor glossy nor specular");
   }
   for (const Examination::Probe& probe : s.probes) {
-    verdict.at(probe.wi());
+    verdict.begin_case_at(probe.wi());
     const Lobes side = same_side(s.wo, probe.wi()) ? Lobes::reflection : Lobes::transmission;
     verdict.expect(any(all & side) || probe.f.is_black(), "f is {} for wi {}, a side that the flags exclude", probe.f,
                    probe.wi());
@@ -89,12 +89,12 @@ void check_flags(const Examination& s, Findings& findings) {
 void check_lanes(const Examination& s, Findings& findings) {
   Verdict verdict(Law::lanes, s);
   for (const BsdfSample& sample : s.samples) {
-    verdict.at(sample.wi);
+    verdict.begin_case_at(sample.wi);
     verdict.expect(idle_lanes_are_black(sample.f, s.lambda), "sample, wi {}: a lane that is not active is not 0",
                    sample.wi);
   }
   for (const Examination::Probe& probe : s.probes) {
-    verdict.at(probe.wi());
+    verdict.begin_case_at(probe.wi());
     verdict.expect(idle_lanes_are_black(probe.f, s.lambda), "f, wi {}: a lane that is not active is not 0", probe.wi());
   }
   findings.push_back(verdict.finding());
@@ -110,11 +110,11 @@ void check_retired_lanes(const Bsdf& bsdf, const SampledWavelengths& lambda, con
     return sphere_direction(z, 2 * std::numbers::pi * numbers.uniform_double());
   };
   for (int i = 0; i < kDirections; ++i) {
-    verdict.begin();
+    verdict.begin_case();
     const Vec3 wo = direction(), wi = direction();
     const SampledSpectrum f = f_once(bsdf, wo, wi, hash_key(seed, i));
     verdict.expect(idle_lanes_are_black(f, lambda), "wo {}, wi {}: f of a retired lane is not 0: {}", wo, wi, f);
-    if (const auto s = draw_once(bsdf, wo, hash_key(seed, i)))
+    if (const auto s = sample_once(bsdf, wo, hash_key(seed, i)))
       verdict.expect(idle_lanes_are_black(s->f, lambda), "wo {}: a sample's f of a retired lane is not 0: {}", wo,
                      s->f);
   }
@@ -125,7 +125,7 @@ void check_coverage(const Examination& s, Findings& findings) {
   constexpr float kUnderflow = 1e-30f;  // a density may underflow where f nearly does
   Verdict verdict(Law::coverage, s);
   for (const Examination::Probe& probe : s.probes) {
-    verdict.at(probe.wi());
+    verdict.begin_case_at(probe.wi());
     verdict.expect(probe.pdf > 0 || !(probe.f.max() > kUnderflow), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
                    probe.pdf);
   }
@@ -135,13 +135,13 @@ void check_coverage(const Examination& s, Findings& findings) {
 void check_values(const Examination& s, Findings& findings) {
   Verdict verdict(Law::values, s);
   for (const BsdfSample& sample : s.samples) {
-    verdict.at(sample.wi);
-    verdict.expect(is_proper(sample.f) && std::isfinite(sample.pdf) && sample.pdf > 0, "sample, wi {}: f is {}, pdf {}",
-                   sample.wi, sample.f, sample.pdf);
+    verdict.begin_case_at(sample.wi);
+    verdict.expect(is_valid_value(sample.f) && std::isfinite(sample.pdf) && sample.pdf > 0,
+                   "sample, wi {}: f is {}, pdf {}", sample.wi, sample.f, sample.pdf);
   }
   for (const Examination::Probe& probe : s.probes) {
-    verdict.at(probe.wi());
-    verdict.expect(is_proper(probe.f) && is_proper(probe.pdf), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
+    verdict.begin_case_at(probe.wi());
+    verdict.expect(is_valid_value(probe.f) && is_valid_value(probe.pdf), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
                    probe.pdf);
   }
   findings.push_back(verdict.finding());

@@ -33,8 +33,8 @@ std::string box_text(const SphereBox& box) {
 }
 
 /// Describes the bin with the largest deviation in standard errors.
-std::string farthest_off(const Examination& s, const std::vector<double>& observed,
-                         const std::vector<double>& expected) {
+std::string describe_largest_deviation(const Examination& s, const std::vector<double>& observed,
+                                       const std::vector<double>& expected) {
   const auto off = [&](size_t b) { return std::abs(observed[b] - expected[b]) / std::sqrt(expected[b] + 1); };
   size_t worst = 0;
   for (size_t b = 1; b < s.bins.size(); ++b)
@@ -66,7 +66,7 @@ void check_sampling(const Examination& s, Findings& findings) {
   }
   findings.push_back(statistical(Law::sampling, s, test.p,
                                  fmt::format("{} sampled directions in {} bins, largest deviation in {}", count,
-                                             s.bins.size(), farthest_off(s, observed, expected)),
+                                             s.bins.size(), describe_largest_deviation(s, observed, expected)),
                                  measure,
                                  s.map("directions sampled", observed, "directions expected from pdf", expected)));
 }

@@ -22,7 +22,7 @@ std::vector<Vec3> random_directions(int count, uint64_t seed) {
 }
 
 // Directions where division by zero or cancellation is likely: poles, horizon, grazing.
-std::vector<Vec3> awkward_directions(uint64_t seed) {
+std::vector<Vec3> edge_case_directions(uint64_t seed) {
   std::vector<Vec3> directions{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {-1, 0, -0.f}};
   for (const double z : {1e-30, 1e-7, 1e-4, 0.01, 1 - 1e-7})
     for (const double side : {-1.0, 1.0}) directions.push_back(sphere_direction(side * z, 0.7));
@@ -37,10 +37,10 @@ void check_sample_values(const Bsdf& bsdf, const Vec3& wo, uint64_t seed, Verdic
     for (const float u : kNumbers)
       for (const float v : kNumbers) {
         RandomStream stream(hash_key(seed, uint64_t(uc * 0x1p24f), uint64_t(u * 0x1p24f), uint64_t(v * 0x1p24f)));
-        verdict.begin();
+        verdict.begin_case();
         const auto s = bsdf.sample(wo, uc, {u, v}, stream);
         if (!s) continue;
-        verdict.expect(is_proper(s->f), "wo {}, numbers {} {} {}: a sample's f is {}", wo, uc, u, v, s->f);
+        verdict.expect(is_valid_value(s->f), "wo {}, numbers {} {} {}: a sample's f is {}", wo, uc, u, v, s->f);
         verdict.expect(std::isfinite(s->pdf) && s->pdf > 0, "wo {}, numbers {} {} {}: a sample's pdf is {}", wo, uc, u,
                        v, s->pdf);
         verdict.expect(std::abs(length(s->wi) - 1) < 1e-5f, "wo {}, numbers {} {} {}: wi {} is not a unit vector", wo,
@@ -52,16 +52,16 @@ void check_sample_values(const Bsdf& bsdf, const Vec3& wo, uint64_t seed, Verdic
 
 }  // namespace
 
-void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings) {
+void check_edge_cases(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings) {
   Verdict verdict(Law::values, where);
-  const auto directions = awkward_directions(seed);
+  const auto directions = edge_case_directions(seed);
   for (const Vec3& wo : directions) {
     for (const Vec3& wi : directions) {
-      verdict.begin();
+      verdict.begin_case();
       const SampledSpectrum f = f_once(bsdf, wo, wi, seed);
       const float pdf = bsdf.pdf(wo, wi);
-      verdict.expect(is_proper(f), "wo {}, wi {}: f is {}", wo, wi, f);
-      verdict.expect(is_proper(pdf), "wo {}, wi {}: pdf is {}", wo, wi, pdf);
+      verdict.expect(is_valid_value(f), "wo {}, wi {}: f is {}", wo, wi, f);
+      verdict.expect(is_valid_value(pdf), "wo {}, wi {}: pdf is {}", wo, wi, pdf);
       verdict.expect((wo.z != 0 && wi.z != 0) || f.is_black(), "wo {}, wi {}: scattered at cos theta = 0", wo, wi);
     }
     check_sample_values(bsdf, wo, seed, verdict);
@@ -106,8 +106,8 @@ void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, const E
     for (const Vec3& b : std::span(directions).subspan(i + 1)) {
       const SampledSpectrum there = reciprocal_once(bsdf, a, b, effort.seed),
                             back = reciprocal_once(bsdf, b, a, effort.seed);
-      verdict.begin();
-      verdict.expect(near(there, back), "f is {} from {} to {}, {} back", there, a, b, back);
+      verdict.begin_case();
+      verdict.expect(is_close(there, back), "f is {} from {} to {}, {} back", there, a, b, back);
     }
     if (verdict.failed() && !broken_at) broken_at = a;
   }

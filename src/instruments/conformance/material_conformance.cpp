@@ -81,7 +81,7 @@ void examine_set(const MaterialInfo& info, const ParameterSet& set, bool must_wo
   const std::string tilted = where + ", under a tilted shading normal";
   run_guarded(tilted, findings, [&] {
     if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
-      check_awkward_values(*bsdf, tilted, effort.seed, findings);
+      check_edge_cases(*bsdf, tilted, effort.seed, findings);
   });
   if (lambda.count == 1) return;  // a path whose only lane is retired has ended
   SampledWavelengths retired = lambda;

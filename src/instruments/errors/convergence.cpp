@@ -10,7 +10,7 @@ namespace {
 double noise_of(const ConvergencePoint& p, double z) { return p.noise.value + z * p.noise.standard_error; }
 
 /// Effort between two points at which noise reaches `noise`: linear in logarithms.
-Effort between(const ConvergencePoint& a, const ConvergencePoint& b, double noise, double z) {
+Effort interpolate_effort(const ConvergencePoint& a, const ConvergencePoint& b, double noise, double z) {
   const double t = std::log(noise_of(a, z) / noise) / std::log(noise_of(a, z) / noise_of(b, z));
   const auto mix = [t](double from, double to) { return from * std::pow(to / from, t); };
   return {mix(a.samples, b.samples), mix(a.seconds, b.seconds), true};
@@ -30,7 +30,7 @@ std::optional<Effort> Convergence::until_noise(double mean_square, double z) con
   for (size_t i = 1; i < points_.size(); ++i)
     if (noise_of(points_[i], z) <= mean_square) {
       if (noise_of(points_[i], z) <= 0) return Effort{points_[i].samples, points_[i].seconds, true};
-      return between(points_[i - 1], points_[i], mean_square, z);
+      return interpolate_effort(points_[i - 1], points_[i], mean_square, z);
     }
   const double more = noise_of(*last, z) / mean_square;
   return Effort{last->samples * more, last->seconds * more, false};

@@ -113,7 +113,7 @@ Planes opponent_planes(const Image& image, const Colorimetry& colors) {
 }
 
 /// Maps [0, max] to [0, 1] piecewise linearly: differences up to kPc of the largest use kPt of the range.
-double redistributed(double difference, double largest) {
+double remap_difference(double difference, double largest) {
   const double knee = kPc * largest;
   if (difference < knee) return kPt / knee * difference;
   return kPt + (difference - knee) / (largest - knee) * (1 - kPt);
@@ -190,7 +190,7 @@ std::vector<float> flip_map(const Image& reference, const Image& test, double pi
   const double largest = std::pow(hyab(colors.hunt_lab({0, 1, 0}), colors.hunt_lab({0, 0, 1})), kQc);
   std::vector<float> map(features.size());
   for (size_t i = 0; i < map.size(); ++i) {
-    const double color = redistributed(std::pow(hyab(lab_a[i], lab_b[i]), kQc), largest);
+    const double color = remap_difference(std::pow(hyab(lab_a[i], lab_b[i]), kQc), largest);
     map[i] = static_cast<float>(std::pow(color, 1 - features[i]));
   }
   return map;

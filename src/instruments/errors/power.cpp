@@ -21,7 +21,7 @@ int64_t binomial_quantile(double trials, double probability, double p) {
 
 /// Smallest x in (0, most] with `is_found(x)`, which is monotonic; infinite if there is none.
 template <class Test>
-double smallest_found(double most, const Test& is_found) {
+double smallest_detectable(double most, const Test& is_found) {
   if (!(most > 0) || !is_found(most)) return kInfinite;
   constexpr int kHalvings = 30;
   double missed = 0, found = most;
@@ -48,7 +48,7 @@ double detectable_difference(const Estimate& a, double level, double power) {
 
 double detectable_shortfall(int64_t trials, double low, double level, double power) {
   const double n = static_cast<double>(trials);
-  return smallest_found(low, [&](double distance) {
+  return smallest_detectable(low, [&](double distance) {
     const int64_t most = binomial_quantile(n, low - distance, power);
     return static_cast<double>(most) < low * n && binomial_p(most, trials, low, low) < level;
   });
@@ -57,7 +57,7 @@ double detectable_shortfall(int64_t trials, double low, double level, double pow
 double detectable_surplus(int64_t trials, double probability, double level, double power) {
   const double n = static_cast<double>(trials);
   const int64_t least = binomial_quantile(n, probability, 1 - power);
-  return smallest_found(probability, [&](double distance) {
+  return smallest_detectable(probability, [&](double distance) {
     const double high = probability - distance;
     return static_cast<double>(least) > high * n && binomial_p(least, trials, high, high) < level;
   });

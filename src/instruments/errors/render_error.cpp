@@ -74,7 +74,7 @@ double mean_of(const RenderPair& renders, std::span<const float> use) {
   return mean.result().value;
 }
 
-RenderError in_units_of(double unit, RenderError error) {
+RenderError in_unit(double unit, RenderError error) {
   scale(error, 1 / square(unit));
   return error;
 }

@@ -30,7 +30,7 @@ RenderError render_error(const RenderPair& renders, const RenderPair& reference,
 double mean_of(const RenderPair& renders, std::span<const float> use = {});
 
 /// Returns the error in units of `unit` > 0: mean squares are divided by its square.
-RenderError in_units_of(double unit, RenderError error);
+RenderError in_unit(double unit, RenderError error);
 
 /// Mean over several channels of equal weight, whose errors may be correlated in any way.
 RenderError mean_of(std::span<const RenderError> channels);

@@ -55,7 +55,7 @@ template <class Call>
 void add_call(const TimedHit& timed, BsdfCall which, const Call& call) {
   benchmark::RegisterBenchmark(timed.name(which).c_str(), [&timed, call](benchmark::State& state) {
     check_stop();
-    const Vec3 wo = viewer_at(timed.hit.theta_deg);
+    const Vec3 wo = view_direction(timed.hit.theta_deg);
     Arena arena;
     const Bsdf& bsdf = *timed.hit.material.evaluate(flat_hit(), timed.hit.lambda, arena);
     CallDraws draws;
@@ -68,7 +68,7 @@ void add_call(const TimedHit& timed, BsdfCall which, const Call& call) {
 void add_hit(const TimedHit& timed) {
   benchmark::RegisterBenchmark(timed.name(BsdfCall::hit).c_str(), [&timed](benchmark::State& state) {
     check_stop();
-    const Vec3 wo = viewer_at(timed.hit.theta_deg);
+    const Vec3 wo = view_direction(timed.hit.theta_deg);
     const Hit hit = flat_hit();
     Arena arena;
     CallDraws draws;

@@ -55,7 +55,7 @@ ErrorTable errors_of(const ImagePair& renders, const ImagePair& reference, size_
   for (size_t region = 0; region < kRegions; ++region)
     for (size_t c = 0; c < means[region].size(); ++c) {
       RenderError& error = errors[region][kFirst + c];
-      error = in_units_of(means[region][c], error);
+      error = in_unit(means[region][c], error);
     }
   for (auto& region : errors) region[kTogether] = frond::mean_of(std::span(region).subspan(kFirst, film_channels));
   return errors;
