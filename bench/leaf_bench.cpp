@@ -22,7 +22,7 @@ struct WalkTask {
 };
 
 /// The simple loop that the tests use as a reference; analog only.
-void walk_plainly(const WalkTask& task) {
+void walk_scalar(const WalkTask& task) {
   test::PlainWalk walk(task.tissue, 1);
   for (int i = 0; i < kWalks; ++i) benchmark::DoNotOptimize(walk(task.wo));
 }
@@ -56,7 +56,7 @@ void add_walk(const std::string& method, const Specimen& specimen, Absorption ab
 }
 
 void add_walks(const Specimen& specimen, Absorption absorption) {
-  if (absorption == Absorption::analog) add_walk("plain", specimen, absorption, walk_plainly);
+  if (absorption == Absorption::analog) add_walk("plain", specimen, absorption, walk_scalar);
   add_walk("scalar", specimen, absorption, walk_one_by_one);
   for (const batch::Kernel* kernel : batch_kernels())
     add_walk("batch_" + std::string(name_of(*kernel)), specimen, absorption,

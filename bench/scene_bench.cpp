@@ -44,7 +44,7 @@ class Meter {
 };
 
 /// Sets a counter and its standard error.
-void tell(benchmark::State& state, const std::string& name, double value, double standard_error) {
+void report(benchmark::State& state, const std::string& name, double value, double standard_error) {
   state.counters[name] = value;
   state.counters[name + "_se"] = standard_error;
 }
@@ -54,16 +54,16 @@ double effort(const Accuracy& accuracy, const Meter& meter) {
   return accuracy.noise.value * double(SceneStudy::kSamples) * meter.seconds_per_path();
 }
 
-void tell_errors(benchmark::State& state, const Accuracy& accuracy) {
+void report_errors(benchmark::State& state, const Accuracy& accuracy) {
   constexpr std::array<const char*, 3> kNames{"red", "green", "blue"};
   for (size_t c = 0; c < kNames.size(); ++c) {
     const auto& [error, offset] = accuracy.channels[c];
     const std::string channel = std::string("_") + kNames[c];
-    tell(state, "rms" + channel, error.total.root(), error.total.standard_error / (2 * error.total.root()));
-    tell(state, "bias2" + channel, error.bias.value, error.bias.standard_error);
-    tell(state, "offset" + channel, offset.mean, offset.standard_error());
+    report(state, "rms" + channel, error.total.root(), error.total.standard_error / (2 * error.total.root()));
+    report(state, "bias2" + channel, error.bias.value, error.bias.standard_error);
+    report(state, "offset" + channel, offset.mean, offset.standard_error());
   }
-  tell(state, "variance", accuracy.noise.value, accuracy.noise.standard_error);
+  report(state, "variance", accuracy.noise.value, accuracy.noise.standard_error);
 }
 
 /// Renders bundles of both in turn, each as often the first as the second, so that other load affects both equally.
@@ -95,7 +95,7 @@ void measure(benchmark::State& state, const std::string& scene, const Candidate&
   state.counters["speedup"] = baseline.seconds_per_path() / own.seconds_per_path();
   if (!candidate.is_leaf) return;
   const Accuracy& accuracy = study.accuracy(candidate.material);
-  tell_errors(state, accuracy);
+  report_errors(state, accuracy);
   const double own_effort = effort(accuracy, own);
   state.counters["efficiency"] = 1 / own_effort;
   state.counters["speedup_equal_noise"] = effort(study.accuracy(kBaseline), baseline) / own_effort;

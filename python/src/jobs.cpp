@@ -11,7 +11,7 @@ constexpr const char* kKinds[] = {"flag", "count", "seed", "real", "numbers", "t
 nb::dict record_of(const JobParam& p) {
   nb::dict d;
   d["name"] = std::string(p.name), d["kind"] = kKinds[size_t(p.kind)], d["relative"] = p.relative,
-  d["doc"] = documented(p);
+  d["doc"] = parameter_help(p);
   d["type"] = std::string(p.type), d["default"] = std::string(p.default_value), d["unit"] = std::string(p.unit);
   d["choices"] = std::vector<std::string>(p.choices.begin(), p.choices.end());
   d["aliases"] = std::string(p.aliases), d["implied"] = std::string(p.implied);

@@ -35,7 +35,7 @@ size_t help_width() {
 }
 
 /// Returns `head` followed by `text` as a block that begins at `column`. Lines are wrapped at help_width().
-std::string hanging(std::string head, const std::string& text, size_t column) {
+std::string hanging_indent(std::string head, const std::string& text, size_t column) {
   const size_t width = help_width();
   const std::string indent(column, ' ');
   std::string result;
@@ -64,18 +64,20 @@ class HelpFormatter final : public CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     return CLI::detail::find_and_replace(Formatter::make_help(app, std::move(name), mode), "\n\n\n", "\n\n");
   }
-  std::string make_description(const CLI::App* app) const override { return hanging("", app->get_description(), 0); }
+  std::string make_description(const CLI::App* app) const override {
+    return hanging_indent("", app->get_description(), 0);
+  }
   std::string make_usage(const CLI::App* app, std::string name) const override {
     if (!app->get_parent()) return "Usage: " + name + " [OPTIONS] COMMAND ...\n";
-    return hanging("Usage:", usage(find_job(app->get_name())), 7);
+    return hanging_indent("Usage:", usage(find_job(app->get_name())), 7);
   }
   std::string make_footer(const CLI::App* app) const override {
     if (!app->get_parent()) return app->get_footer() + '\n';
-    return app->get_footer().empty() ? "" : hanging("", app->get_footer(), 0);
+    return app->get_footer().empty() ? "" : hanging_indent("", app->get_footer(), 0);
   }
   std::string make_subcommand(const CLI::App* sub) const override {
     constexpr size_t kColumn = 22;
-    return hanging("  " + sub->get_name(), sub->get_description(), kColumn);
+    return hanging_indent("  " + sub->get_name(), sub->get_description(), kColumn);
   }
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     constexpr size_t kColumn = 30;
@@ -86,14 +88,14 @@ class HelpFormatter final : public CLI::Formatter {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
       head = fmt::format("  {}", fmt::join(names, ","));
     }
-    return hanging(head + option->get_option_text(), option->get_description(), kColumn);
+    return hanging_indent(head + option->get_option_text(), option->get_description(), kColumn);
   }
 };
 
 /// Adds an option that only collects words. Arguments parses and checks them, for the command line as for Python.
 CLI::Option* add_option(CLI::App& app, const JobParam& p) {
   const std::string names = p.positional ? std::string(p.name) : fmt::format("{}", fmt::join(option_names(p), ","));
-  const std::string doc = documented(p);
+  const std::string doc = parameter_help(p);
   if (p.kind == ArgumentKind::flag) return app.add_flag(names, doc);
   if (!p.implied.empty())
     return app.add_flag(fmt::format("{}{{{}}}", names, p.implied), doc)
@@ -199,7 +201,7 @@ std::string unknown_option_of(const CLI::App& command, const std::string& name) 
 }
 
 /// Returns the error of a failed parse if it is an unknown command or long option, with a suggestion; otherwise "".
-std::string mistyped(const CLI::App& app) {
+std::string unknown_word_error(const CLI::App& app) {
   const auto words = app.remaining();
   const auto commands = app.get_subcommands();
   if (commands.empty() && !words.empty() && !words[0].starts_with('-')) return unknown_command(words[0], app);
@@ -209,8 +211,8 @@ std::string mistyped(const CLI::App& app) {
 
 /// Prints the error and returns the exit code. Help is an error for CLI11, with code 0. An unknown word is reported
 /// first; CLI11 would report a missing parameter instead.
-int refuse(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string message = error.get_exit_code() == 0 ? "" : mistyped(app);
+int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string message = error.get_exit_code() == 0 ? "" : unknown_word_error(app);
   if (!message.empty()) {
     print_to_stderr("frond: " + message);
     return 1;
@@ -240,13 +242,13 @@ std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const*
   app.footer(kExamples);
   const std::vector<Command> commands = add_commands(app);
   const CLI::App& render = *app.get_subcommand("render");
-  std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, long_names(render));
+  std::vector<std::string> words = translate_pbrt_options({argv + 1, argv + argc}, long_names(render));
   if (!words.empty() && words[0] == "help") words = {words.size() > 1 ? words[1] : "--help", "--help"};
   std::ranges::reverse(words);  // CLI11 reads the words from the end
   try {
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
-    return refuse(app, error);
+    return report_parse_error(app, error);
   }
   const auto chosen = std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); });
   ParsedCommand parsed{.job = chosen->job, .arguments = arguments_of(*chosen), .pbrt_options = {}};

@@ -12,7 +12,7 @@ namespace {
 std::atomic<int> caught = 0;  // a signal handler may only set a lock-free atomic
 static_assert(std::atomic<int>::is_always_lock_free);
 
-void remember(int signal) { caught = signal; }
+void record_signal(int signal) { caught = signal; }
 
 /// Ends the program: the handler is reset on entry, and the second signal is delivered when it returns.
 void advise_checkpoint(int signal) {
@@ -34,10 +34,10 @@ void set_handler(int signal, void (*handler)(int)) {
 
 Interrupt::Interrupt() {
   caught = 0;
-  for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, remember);
+  for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, record_signal);
   struct sigaction hangup {};
   // The terminal was closed; nohup ignores it.
-  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) set_handler(SIGHUP, remember);
+  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) set_handler(SIGHUP, record_signal);
   // The stop is requested from a thread, because request_stop() is not safe in a signal handler.
   watcher_ = std::jthread([this](const std::stop_token& end) {
     while (!end.stop_requested() && caught == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kIgnore = "--ignore-unsupported";
 
 /// Whether the word is a list of kinds for --ignore-unsupported, and not the next argument.
-bool are_kinds(const std::string& word) {
+bool is_kind_list(const std::string& word) {
   try {
     (void)Unsupported(word);
     return true;
@@ -33,7 +33,7 @@ std::string normalized(std::string_view name) {
 }
 
 /// Returns an option in frond's spelling: "-NThreads=2" becomes "--nthreads=2". Other words are returned unchanged.
-std::string with_our_name(const std::string& word, const std::vector<std::string>& names) {
+std::string to_frond_spelling(const std::string& word, const std::vector<std::string>& names) {
   const std::string_view all = word;
   const size_t name_end = std::min(all.find('='), all.size());
   if (!all.starts_with('-') || name_end < 3) return word;
@@ -68,14 +68,14 @@ bool is_scene_name(const std::string& word) {
 }
 
 /// Options are translated only if a scene file is given without a command, as pbrt is called.
-std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const std::vector<std::string>& names) {
+std::vector<std::string> translate_pbrt_options(std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && (words[0].starts_with('-') || is_scene_name(words[0])) &&
       std::ranges::any_of(words, is_scene_name)) {
-    for (std::string& word : words) word = with_our_name(word, names);
+    for (std::string& word : words) word = to_frond_spelling(word, names);
     words.insert(words.begin(), "render");
   }
   for (size_t i = 1; i < words.size(); ++i)
-    if (words[i - 1] == kIgnore && are_kinds(words[i])) {
+    if (words[i - 1] == kIgnore && is_kind_list(words[i])) {
       words[i - 1] += "=" + words[i];
       words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
     }

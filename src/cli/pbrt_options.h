@@ -16,7 +16,7 @@ std::vector<std::string> pbrt_warnings(const std::vector<const PbrtOption*>& giv
 /// Returns the command line in frond's spelling: `frond SCENE.pbrt` with options of pbrt-v4 (`-spp`, `--NThreads`)
 /// becomes `frond render`. A word after --ignore-unsupported becomes its value if it is a list of kinds. `names` are
 /// the long options of render.
-std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const std::vector<std::string>& names);
+std::vector<std::string> translate_pbrt_options(std::vector<std::string> words, const std::vector<std::string>& names);
 
 /// Whether the word is a scene file's name: *.pbrt, *.pbrt.gz, or - for standard input.
 bool is_scene_name(const std::string& word);

@@ -22,7 +22,7 @@ namespace {
 constexpr int kTryAgainLater = 75;  // EX_TEMPFAIL of sysexits.h
 
 /// Stop signals are handled only if there is a file to save the partial result to.
-bool asks_for_parts(const Arguments& args) {
+bool saves_partial_result(const Arguments& args) {
   return (args.declares("checkpoint") && args.given("checkpoint")) || (args.declares("resume") && args.flag("resume"));
 }
 
@@ -36,7 +36,7 @@ bool writes_to_standard_output(const Arguments& args) {
 /// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped. Exceptions of
 /// plug-ins name them.
 template <class Act>
-Result guarded(const Log& log, std::span<const std::string> plugins, const Act& act) {
+Result run_guarded(const Log& log, std::span<const std::string> plugins, const Act& act) {
   try {
     return act();
   } catch (const Stopped&) {
@@ -56,13 +56,13 @@ int execute(const ParsedCommand& command) {
   JobContext context(console, session_options(args));
   ProgressLine progress(quiet);
   std::optional<Interrupt> interrupt;
-  if (asks_for_parts(args))
+  if (saves_partial_result(args))
     interrupt.emplace();
   else if (args.declares("checkpoint"))
     advise_checkpoint_on_interrupt();
   RenderControl control{.progress = &progress};
   if (interrupt) control.stop = interrupt->token();
-  const Result result = guarded(console, context.options().plugins, [&] {
+  const Result result = run_guarded(console, context.options().plugins, [&] {
     return run_job(*command.job, {context, args, control});
   });
   if (result.stopped) return 128 + (interrupt ? interrupt->signal() : 0);

@@ -193,7 +193,7 @@ std::string json_of(const std::string& of_times, const Arguments& args, std::spa
 }
 
 /// Timings are unreliable when other processes use the processors.
-void warn_where_busy(const Log& log) {
+void warn_if_busy(const Log& log) {
   double load = 0;
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
   if (getloadavg(&load, 1) == 1 && load > threads)
@@ -208,7 +208,7 @@ Result bench(const JobRun& run) {
   if (run.args.given("plot")) check_bench_chart(materials.count(), materials.angles());
   const std::vector<TimedHit> hits = materials.hits();
   const CallTimes times = time_calls(hits, {int(run.args.count("repetitions")), run.args.real("min-time")});
-  warn_where_busy(run.log());
+  warn_if_busy(run.log());
   std::vector<BenchMeasurement> measurements;
   for (size_t i = 0; i < hits.size(); ++i) {
     run.check_stop();

@@ -146,7 +146,7 @@ void add_rows(Table& table, const BrfMeasurement& measurement, const std::string
 }
 
 /// Table with one row for each direction and one column for each band.
-Table by_direction(const BrfMeasurement& measurement) {
+Table direction_table(const BrfMeasurement& measurement) {
   Table table{"brf"};
   for (size_t view = 0; view < measurement.views.size(); ++view) {
     table.add("zenith", measurement.views[view].zenith_deg);
@@ -279,7 +279,7 @@ Result brf(const JobRun& run) {
                           {"paths", double(measurement.paths)},
                           {"relative_error", error}}};
   add_rows(result.tables[0], measurement, "");
-  result.text = fmt::format("{}\n{}", measurement.quantity, to_text(by_direction(measurement)));
+  result.text = fmt::format("{}\n{}", measurement.quantity, to_text(direction_table(measurement)));
   return result;
 }
 

@@ -101,7 +101,7 @@ LastWord last_word(const Words& given) {
 }
 
 /// Returns completions of the last word, one a line; FILE, FOLDER or SCENE if the shell is to complete a path.
-std::string completed(const Words& given, bool documented) {
+std::string completions(const Words& given, bool documented) {
   auto [command, param, value] = last_word(given);
   if (param && param->path != PathUse::none)
     return (param->type == "SCENE" || param->type == "FOLDER" ? value_name(*param) : "FILE") + "\n";
@@ -121,7 +121,7 @@ std::string completed(const Words& given, bool documented) {
 Result completion(const JobRun& run) {
   const std::string shell = run.args.text("shell"), output = run.args.text("output");
   std::string made(shell == "bash" ? bash_completion : shell == "zsh" ? zsh_completion : fish_completion);
-  if (run.args.given("words")) made = completed(run.args.texts("words"), shell != "bash");
+  if (run.args.given("words")) made = completions(run.args.texts("words"), shell != "bash");
   if (output == "-") return {.text = made, .is_requested = true};
   write_text(output, made);
   return {};

@@ -64,13 +64,13 @@ constexpr JobParam kParams[] = {
 
 /// Whether the material may refuse values other than its declared defaults: parameters or wavelengths are given, or a
 /// parameter is required.
-bool is_asked_for(const MaterialWords& material, const Arguments& args) {
+bool has_given_values(const MaterialWords& material, const Arguments& args) {
   return !material.plugin.params.empty() || args.given("wavelengths") ||
          std::ranges::any_of(material.info.params, &Param::required);
 }
 
 /// Splits wavelengths into groups of at most kLanes, the number that a path carries.
-std::vector<GivenWavelengths> in_lanes(const std::vector<double>& nm) {
+std::vector<GivenWavelengths> split_into_lanes(const std::vector<double>& nm) {
   std::vector<GivenWavelengths> groups;
   for (size_t i = 0; i < nm.size(); i += kLanes) {
     const auto group = std::span(nm).subspan(i, std::min<size_t>(kLanes, nm.size() - i));
@@ -124,7 +124,7 @@ class MaterialTest {
                                         .samples_at_ends = samples_at_ends(args),
                                         .varied = swept_.varied,
                                         .unvaried = swept_.unvaried}};
-    for (const GivenWavelengths& wavelengths : in_lanes(report.wavelengths_nm)) test(wavelengths, report);
+    for (const GivenWavelengths& wavelengths : split_into_lanes(report.wavelengths_nm)) test(wavelengths, report);
     if (run_.control.progress) run_.control.progress->finish();
     report.level = apply_false_alarm_rate(report.findings, report.effort.false_alarm_rate);
     return report;
@@ -138,7 +138,7 @@ class MaterialTest {
     // Ends of ranges would fill the cache with tables of leaves that no scene has.
     const Preparation uncached{wavelengths, run_.session().pool(), silent_log(), {}};
     const Claims claims{run_.args.flag("lossless"), run_.args.flag("reciprocal")};
-    MaterialExamination how{cached, resolver, claims, report.effort, is_asked_for(material_, run_.args)};
+    MaterialExamination how{cached, resolver, claims, report.effort, has_given_values(material_, run_.args)};
     add(examine(material_.info, {&given_, 1}, how), wavelengths, report);
     ExaminationEffort less = report.effort;
     less.samples = report.parameters.samples_at_ends;

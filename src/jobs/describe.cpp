@@ -105,8 +105,8 @@ Row row_of(const JobParam& p) {
           value,
           p.required ? "required" : std::string(p.default_value),
           std::string(p.unit),
-          accepted(p),
-          std::string(p.doc) + relations(p),
+          accepted_values_text(p),
+          std::string(p.doc) + relations_text(p),
           name + (p.positional || value.empty() ? ""
                   : p.implied.empty()           ? " " + value
                                                 : "[=" + value + "]")};

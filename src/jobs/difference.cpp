@@ -92,7 +92,7 @@ void warn_of_same_noise(const std::vector<LinearFile>& halves, const Log& log) {
 /// Statistics of a channel, in the order of the table and the facts. Text output shows those with a title.
 constexpr struct {
   const char *name, *title;
-  double (*of)(const ImageError&);
+  double (*value)(const ImageError&);
 } kNumbers[] = {
     {"rms", "RMS", [](const ImageError& e) { return e.rms; }},
     {"rms_clipped", "RMS, clipped", [](const ImageError& e) { return e.rms_clipped; }},
@@ -131,15 +131,15 @@ std::string add_errors(Result& result, const std::string& region, const std::str
     result.tables[0].add("region", region);
     result.tables[0].add("channel", std::string(kChannels[c]));
     for (const auto& n : kNumbers) {
-      result.tables[0].add(n.name, n.of(errors[c]));
-      result.facts.push_back({fmt::format("{}{}_{}", prefix, n.name, kChannels[c]), n.of(errors[c])});
+      result.tables[0].add(n.name, n.value(errors[c]));
+      result.facts.push_back({fmt::format("{}{}_{}", prefix, n.name, kChannels[c]), n.value(errors[c])});
     }
   }
   Table shown;
   for (const auto& n : kNumbers) {
     if (*n.title == '\0') continue;
     shown.add(region + " pixels", std::string(n.title));
-    for (size_t c = 0; c < kChannels.size(); ++c) shown.add(kChannels[c], n.of(errors[c]));
+    for (size_t c = 0; c < kChannels.size(); ++c) shown.add(kChannels[c], n.value(errors[c]));
   }
   for (Column& column : shown.columns) column.missing = "not known";
   return to_text(shown);

@@ -87,7 +87,7 @@ constexpr leaf::AreaUnit kAreaUnits[] = {leaf::kMicrogramsPerCm2,
                                          leaf::kGramsPerCm2};
 
 /// Returns the parameter of this name that a fit may keep; nullptr if there is none.
-const leaf::LeafNumber* fixable(std::string_view name) {
+const leaf::LeafNumber* find_fixable_number(std::string_view name) {
   // R and T do not depend on the shape of the surface, and a fit leaves it as it is.
   const leaf::LeafNumber* n = leaf::find_leaf_number(name);
   return n && n->is_parameter() && n->action != leaf::LeafAction::surface ? n : nullptr;
@@ -97,17 +97,17 @@ const leaf::LeafNumber* fixable(std::string_view name) {
 leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& option) {
   const size_t equals = word.find('=');
   const std::string name = word.substr(0, equals);
-  const leaf::LeafNumber* parameter = fixable(name);
+  const leaf::LeafNumber* parameter = find_fixable_number(name);
   const auto content = std::ranges::find(leaf::area_contents(), name, &leaf::AreaContent::name);
   if (!parameter && content == leaf::area_contents().end()) {
     std::vector<std::string_view> names;
     for (const leaf::LeafNumber& n : leaf::kLeafNumbers)
-      if (fixable(n.name)) names.push_back(n.name);
+      if (find_fixable_number(n.name)) names.push_back(n.name);
     for (const leaf::AreaContent& c : leaf::area_contents()) {
       if (name == c.prospect_symbol)
         fail({}, "{}: there is no fit parameter \"{}\"; PROSPECT's {} is {}, as {}={:g}{}", option, name, name, c.name,
              c.name, c.unit.typical, c.unit.name);
-      if (!fixable(c.name)) names.push_back(c.name);
+      if (!find_fixable_number(c.name)) names.push_back(c.name);
     }
     fail({}, "{}: there is no fit parameter \"{}\"{}", option, name, suggestion(name, names));
   }
@@ -143,7 +143,7 @@ void check_contradictions(const leaf::FitRequest& request, const std::string& op
       fail({}, "{}: a mesophyll fraction of 0 absorbs nothing", option);
   for (const leaf::AreaContent& content : leaf::area_contents()) {
     // A content that is a parameter too is that parameter, per area; another one gives its parts, or the thickness.
-    if (!given(content.name) || fixable(content.name)) continue;
+    if (!given(content.name) || find_fixable_number(content.name)) continue;
     std::vector<std::string_view> parts;
     for (const leaf::LeafNumber* part : leaf::parts_of(content)) parts.push_back(part->name);
     if (parts.empty() && given("thickness"))

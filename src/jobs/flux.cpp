@@ -79,12 +79,12 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
 }
 
 /// Whether the paths are doubled until an error is small enough, and are not a fixed number.
-bool refines(const Arguments& args) { return args.given("rms") || args.given("instance-error"); }
+bool has_error_limit(const Arguments& args) { return args.given("rms") || args.given("instance-error"); }
 
 /// Returns the largest of the errors relative to their limits, --rms and --instance-error: at most 1 when both are
 /// met. Throws InputError if the instances have absorbed nothing: their error would never be met.
-double relative_to_limits(const JobRun& run, const FluxMeasurement& measurement,
-                          const std::optional<PhotonWeights>& photons) {
+double largest_relative_error(const JobRun& run, const FluxMeasurement& measurement,
+                              const std::optional<PhotonWeights>& photons) {
   double largest = 0;
   if (run.args.given("rms")) largest = measurement.error() / run.args.real("rms");
   if (!run.args.given("instance-error")) return largest;
@@ -104,7 +104,7 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
   // As in the BRF, each band needs some paths for its standard error.
   constexpr uint64_t kLeast = 32;
   const uint64_t least = kLeast * meter.scene().wavelengths().bands().size();
-  const bool is_refined = refines(run.args);
+  const bool is_refined = has_error_limit(run.args);
   const RefineLimits limits{std::max(least, is_refined ? kFirst : uint64_t(run.args.count("paths"))), uint64_t{1} << 40,
                             is_refined ? 1.0 : 0.0};
   std::function<void()> checkpoint;
@@ -119,7 +119,7 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
         measurement.reset();
         if (meter.paths() < paths) meter.trace(paths - meter.paths(), run.session().pool(), control, checkpoint);
       },
-      [&] { return relative_to_limits(run, measurement.emplace(meter.read()), photons); });
+      [&] { return largest_relative_error(run, measurement.emplace(meter.read()), photons); });
   if (end != RefineEnd::stopped && meter.paths() == 0)
     fail(scene_file(run.args), "{}: the time limit ended before any light path was traced",
          run.args.spelled("time-limit"));
@@ -149,7 +149,7 @@ const ParsedPlugin* light_without_unit(const SceneDescription& description) {
 }
 
 /// Returns the name of the light of photons: --irradiance, or that of the scene if it has a unit.
-std::string light_of_photons(const JobRun& run, const SceneDescription& description) {
+std::string photon_light_name(const JobRun& run, const SceneDescription& description) {
   if (run.args.given("irradiance")) return run.args.text("irradiance");
   return std::string(light_without_unit(description) ? kOfPhotons : kOfScene);
 }
@@ -180,7 +180,7 @@ std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescri
   if (!PhotonWeights::are_covered_by(bands)) return {};
   check_physical(description, run);
   if (irradiance) return PhotonWeights::of(bands, *irradiance);
-  if (light_of_photons(run, description) == kOfScene)
+  if (photon_light_name(run, description) == kOfScene)
     return PhotonWeights::of(bands, *horizontal_irradiance(meter.scene(), {400, 700}));
   return PhotonWeights::of(bands, *named_spectrum(kOfPhotons, {}));
 }
@@ -199,8 +199,8 @@ void explain_no_photons(const JobRun& run, std::span<const Band> bands) {
 }
 
 /// Returns which option gives more paths: "raise --paths", or "lower --rms".
-std::string more_paths(const Arguments& args) {
-  if (!refines(args)) return "raise " + args.spelled("paths");
+std::string more_paths_advice(const Arguments& args) {
+  if (!has_error_limit(args)) return "raise " + args.spelled("paths");
   return "lower " + args.spelled(args.given("instance-error") ? "instance-error" : "rms");
 }
 
@@ -213,7 +213,7 @@ void warn_of_unmet(const JobRun& run, const FluxMeasurement& measurement) {
     run.log().warn({},
                    fmt::format("no path met the material{} {}: {} shares are unknown; {}, or give a smaller {}",
                                unmet.size() > 1 ? "s" : "", fmt::join(unmet, ", "), unmet.size() > 1 ? "their" : "its",
-                               more_paths(run.args), run.args.spelled("target")));
+                               more_paths_advice(run.args), run.args.spelled("target")));
 }
 
 /// Warns of instances without an error: in no band a path was absorbed.
@@ -225,7 +225,7 @@ void warn_of_unmet_instances(const JobRun& run, const FluxMeasurement& measureme
                                  [](const MeanError& share) { return std::isnan(share.standard_error); });
   if (unmet > 0)
     run.log().warn({}, fmt::format("{} of {} instances met no light path, or absorb none: their errors are unknown; {}",
-                                   unmet, count, more_paths(run.args)));
+                                   unmet, count, more_paths_advice(run.args)));
 }
 
 /// Relative error as text.
@@ -302,7 +302,7 @@ Result flux(const JobRun& run) {
     const SceneDescription description = described_scene(run);
     auto made = std::make_unique<FluxMeter>(run.session(), description, request);
     photons = photon_weights(run, description, *made, irradiance);
-    light = light_of_photons(run, description);
+    light = photon_light_name(run, description);
     return made;
   };
   const auto loaded = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });

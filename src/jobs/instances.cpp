@@ -135,7 +135,7 @@ class Placement {
   /// Whether a column "radius" scales the object.
   bool by_radius() const { return by_radius_; }
   /// Columns that look like a size or an orientation and are none, while the table has no other.
-  std::vector<std::string> unclear() const {
+  std::vector<std::string> ambiguous_columns() const {
     constexpr std::string_view kSizes[] = {"size",      "diameter", "length", "width",  "area",  "leafarea",
                                            "leaf_area", "r",        "sx",     "sy",     "sz",    "scale_x",
                                            "scale_y",   "scale_z",  "scalex", "scaley", "scalez"};
@@ -173,7 +173,8 @@ class Placement {
                    position[int(i)]};
       return rows;
     }
-    if (by_quaternion_) return turned(position, {at("qx", 0), at("qy", 0), at("qz", 0)}, at("qw", 1), scale, where);
+    if (by_quaternion_)
+      return quaternion_map(position, {at("qx", 0), at("qy", 0), at("qz", 0)}, at("qw", 1), scale, where);
     Vec3d normal{0, 0, 1};
     if (by_normal_) normal = {at("nx", 0), at("ny", 0), at("nz", 1)};
     if (by_angles_) {
@@ -203,7 +204,8 @@ class Placement {
   }
 
   /// Rotation by the quaternion (q, w), normalized here, and uniform scaling.
-  static PreciseTransform::Rows turned(const Vec3d& position, Vec3d q, double w, double scale, const Location& where) {
+  static PreciseTransform::Rows quaternion_map(const Vec3d& position, Vec3d q, double w, double scale,
+                                               const Location& where) {
     const double norm = std::sqrt(dot(q, q) + w * w);
     if (norm == 0) fail(where, "the quaternion is 0 0 0 0");
     q = q / norm, w /= norm;
@@ -221,12 +223,12 @@ class Placement {
 };
 
 /// Names what a table leaves to assumptions.
-void tell(const JobRun& run, const NumberTable& table, const Placement& placement) {
+void report_assumptions(const JobRun& run, const NumberTable& table, const Placement& placement) {
   if (!table.has_names())
     run.log().info(fmt::format("{}: no names of columns: they are taken as {}, as Eradiate and RAMI write leaf clouds",
                                run.args.text("csv"), fmt::join(NumberTable::kLeafCloud, " ")));
   if (placement.by_radius()) run.log().info("\"radius\" is the scale: the object that is placed has the radius 1");
-  if (const auto unclear = placement.unclear(); !unclear.empty())
+  if (const auto unclear = placement.ambiguous_columns(); !unclear.empty())
     run.log().warn(table.names_where(),
                    fmt::format("\"{}\" changes neither size nor orientation; columns for these are scale or radius, "
                                "and nx,ny,nz or zenith,azimuth (degrees): rename or remove it",
@@ -250,7 +252,7 @@ Result instances(const JobRun& run) {
   for (const size_t column : placement.columns()) names.push_back(table.names()[column]);
   const size_t rows = table.rows_left();
   if (rows == 0) fail(table.names_where(), "the file has no rows, only the names of columns");
-  tell(run, table, placement);
+  report_assumptions(run, table, placement);
   const std::string output = binary_file_of(run.args, "output");
   const MapType type = map_type_of(table, placement);
   InstanceWriter writer(output, rows, names, type);

@@ -70,7 +70,7 @@ std::string entry(const JobParam& p) {
     for (const std::string& name : option_names(p)) head += (head.empty() ? "" : ", ") + bold(name);
     if (!value.empty()) head += p.implied.empty() ? ' ' + italic(value) : "[=" + italic(value) + ']';
   }
-  return ".TP\n" + head + '\n' + paragraph(documented(p) + (p.required && !p.positional ? " Required." : ""));
+  return ".TP\n" + head + '\n' + paragraph(parameter_help(p) + (p.required && !p.positional ? " Required." : ""));
 }
 
 /// Returns a section with one entry for each parameter; "" without parameters.

@@ -84,8 +84,8 @@ std::string text_of(const std::vector<LabelledMeasurement>& measurements, size_t
 }
 
 /// Warns if the largest number of rays was reached before the requested standard error.
-void warn_where_not_reached(const JobRun& run, const RayBudget& budget,
-                            const std::vector<LabelledMeasurement>& measurements) {
+void warn_of_unmet_error(const JobRun& run, const RayBudget& budget,
+                         const std::vector<LabelledMeasurement>& measurements) {
   const auto missed = std::ranges::count_if(measurements, [&](const LabelledMeasurement& r) {
     return r.measurement.standard_error() > budget.standard_error;
   });
@@ -111,7 +111,7 @@ Result spectrophotometer(const JobRun& run) {
         {tested.material(i).label(),
          measure_shares(tested.lit_material(i), budget, run.session().pool(), tested.progress(i, budget.rays))});
   if (run.control.progress) run.control.progress->finish();
-  warn_where_not_reached(run, budget, measurements);
+  warn_of_unmet_error(run, budget, measurements);
   if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(measurements));
   return {.tables = {table_of(measurements)},
           .notes = tested.notes("spectrophotometer"),

@@ -63,7 +63,7 @@ std::string program() {
 }
 
 /// Returns the parameters that are passed on to `frond render`: its own, except those that submit or the tasks set.
-std::vector<const JobParam*> handed_on(const JobRun& run) {
+std::vector<const JobParam*> forwarded_params(const JobRun& run) {
   std::vector<const JobParam*> params;
   for (const JobParam* p : params_of(kRenderJob)) {
     const bool is_set = std::ranges::find(kParams, p->name, &JobParam::name) != std::end(kParams);
@@ -76,7 +76,7 @@ std::vector<const JobParam*> handed_on(const JobRun& run) {
 
 /// Renders for a moment, so that errors appear now and not an hour later in each task. The part is written and deleted
 /// in the folder of the tasks' parts.
-void try_out(const JobRun& run, const fs::path& parts, std::span<const JobParam* const> params) {
+void render_trial(const JobRun& run, const fs::path& parts, std::span<const JobParam* const> params) {
   const fs::path part = parts / "trial.part";
   Arguments args(params_of(kRenderJob), run.args.spelling());
   for (const JobParam* p : params)
@@ -160,7 +160,7 @@ std::vector<std::pair<std::string, std::string>> values_of(const JobRun& run, co
 
 /// Returns the last lines that an engine has printed to a file, for an error message, which is one line; empty if it
 /// has printed nothing.
-std::string end_of(const fs::path& printed) {
+std::string last_lines(const fs::path& printed) {
   constexpr int kMostLines = 10;
   std::string text = read_file_bytes(printed, {});
   while (text.ends_with('\n')) text.pop_back();
@@ -186,7 +186,7 @@ std::string start(const Engine& engine, const fs::path& folder, bool is_quiet) {
   if (!status) fail({}, "{} cannot be run", engine.program);
   if (*status != 0)
     fail({}, "{} ended with {}; this renders what is missing: {}{}", engine.program, exit_text(*status),
-         command_text(engine, folder), is_quiet ? end_of(printed) : "");
+         command_text(engine, folder), is_quiet ? last_lines(printed) : "");
   return "";
 }
 
@@ -207,10 +207,10 @@ Result submit(const JobRun& run) {
   const fs::path folder =
       fs::absolute(args.given("folder") ? args.text("folder") : fmt::format("{}.{}", args.text("output"), engine.name));
   check_vacant(folder);
-  const auto params = handed_on(run);
+  const auto params = forwarded_params(run);
   const auto values = values_of(run, engine, folder, output, params);
   NewFiles files(folder);
-  try_out(run, files.folder("parts"), params);
+  render_trial(run, files.folder("parts"), params);
   for (const EngineFile& file : engine.files) {
     const std::string name(file.name);
     files.write(name, filled(file.content, values));

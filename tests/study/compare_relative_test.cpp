@@ -136,8 +136,8 @@ TEST(RelativeErrors, AreReadInPerCent) {
   EXPECT_EQ(unit.fixed(0.012345, 4), "1.23 %");
   EXPECT_EQ(unit.rounded(0.012345), "1.2 %");
   EXPECT_EQ(unit.rounded(3.456), "350 %");
-  EXPECT_EQ(unit.as_asked(0.07), "7 %");
-  EXPECT_DOUBLE_EQ(unit.on_axis(0.02), 2);
+  EXPECT_EQ(unit.in_argument_unit(0.07), "7 %");
+  EXPECT_DOUBLE_EQ(unit.axis_value(0.02), 2);
 }
 
 }  // namespace

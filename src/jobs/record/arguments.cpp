@@ -64,7 +64,7 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   return numbers;
 }
 
-std::string hint_of(std::string_view text, std::string_view unit) {
+std::string range_hint(std::string_view text, std::string_view unit) {
   for (const std::string& part : split(std::string(text), ','))
     if (const auto ends = split(part, ':'); ends.size() == 3) {
       const auto first = finite_number(ends[0]), last = finite_number(ends[1]), step = finite_number(ends[2]);
@@ -77,7 +77,7 @@ std::string hint_of(std::string_view text, std::string_view unit) {
 }
 
 /// A flag is included, because Python passes True and False.
-std::string needed(const JobParam& p) {
+std::string expected_text(const JobParam& p) {
   const std::string unit = p.unit.empty() ? "" : fmt::format(" ({})", p.unit);
   if (!p.choices.empty()) return fmt::format("one of {}", fmt::join(p.choices, ", "));
   switch (p.kind) {
@@ -112,13 +112,13 @@ std::string python_spelling(std::string_view name) {
 Arguments::Arguments(std::vector<const JobParam*> params, Spelling how)
     : declared_(std::move(params)), spelling_(how) {}
 
-std::string accepted(const JobParam& p) {
+std::string accepted_values_text(const JobParam& p) {
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, ", "));
   const std::string range = range_text(p.range);
   return !is_number_kind(p.kind) || range.empty() || p.range.max == kCounts.max ? "" : range.substr(1);
 }
 
-std::string relations(const JobParam& p) {
+std::string relations_text(const JobParam& p) {
   std::string text;
   if (!p.needs.empty()) text += fmt::format(" Needs {}.", command_spelling(p.needs));
   if (!p.excludes.empty()) {
@@ -132,15 +132,15 @@ std::string relations(const JobParam& p) {
 }
 
 /// Sentences are in a fixed order, so that all parameters read alike.
-std::string documented(const JobParam& p) {
+std::string parameter_help(const JobParam& p) {
   std::string text(p.doc);
   const auto add = [&text](const std::string& sentence) { text += ' ' + sentence + '.'; };
   if (!text.ends_with('.') && !text.ends_with('?')) text += '.';
-  if (!p.choices.empty()) add(fmt::format("One of {}", accepted(p)));
+  if (!p.choices.empty()) add(fmt::format("One of {}", accepted_values_text(p)));
   if (!p.unit.empty()) add(fmt::format("Unit: {}", p.unit));
-  if (p.choices.empty() && !accepted(p).empty()) add("Range: " + accepted(p));
+  if (p.choices.empty() && !accepted_values_text(p).empty()) add("Range: " + accepted_values_text(p));
   if (!p.default_value.empty()) add(fmt::format("Default: {}", p.default_value));
-  return text + relations(p);
+  return text + relations_text(p);
 }
 
 std::string Arguments::spelled(std::string_view name) const {
@@ -156,7 +156,7 @@ const JobParam* Arguments::find_param(std::string_view name) const {
 namespace {
 
 /// Whether a parameter that is no number may have this word.
-bool allows(const JobParam& p, const std::string& word) {
+bool accepts(const JobParam& p, const std::string& word) {
   if (!p.choices.empty() && std::ranges::find(p.choices, word) == p.choices.end()) return false;
   if (word.empty() && p.path != PathUse::none) return false;
   return p.kind != ArgumentKind::flag || word == "true" || word == "false";
@@ -181,9 +181,9 @@ std::optional<std::vector<double>> numbers_of(const JobParam& p, const std::stri
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
   const auto refuse = [&](const std::string& word) {
-    fail({}, "{}: {} {} needed; \"{}\" was given{}", spelled(p.name), needed(p),
+    fail({}, "{}: {} {} needed; \"{}\" was given{}", spelled(p.name), expected_text(p),
          p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word,
-         p.kind == ArgumentKind::numbers ? hint_of(word, p.unit) : "");
+         p.kind == ArgumentKind::numbers ? range_hint(word, p.unit) : "");
   };
   // Several words of a list of numbers are concatenated: --angles 0 --angles 8.
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
@@ -195,7 +195,7 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
   for (std::string& word : value.words) {
     if (word.find('\0') != std::string::npos) fail({}, "{}: a text without zero bytes is needed", spelled(p.name));
     if (word == "true" && !p.implied.empty()) word = p.implied;
-    if (!allows(p, word)) refuse(word);
+    if (!accepts(p, word)) refuse(word);
     if (p.path != PathUse::none) check_file_name(word, spelled(p.name));
     if (p.kind == ArgumentKind::seed) {
       const char* end = word.data() + word.size();

@@ -73,15 +73,15 @@ inline constexpr Interval kCounts{1, 9007199254740992};  ///< whole numbers that
 
 /// Returns the values that errors and pages name: "a whole number from 1 to 1024", "a number above 0", "one of linear,
 /// log".
-std::string needed(const JobParam& param);
+std::string expected_text(const JobParam& param);
 
 /// Returns the range or the choices: "from 1 to 1024", "above 0", "horizontal, uniform"; "" if any value is accepted.
-std::string accepted(const JobParam& param);
+std::string accepted_values_text(const JobParam& param);
 /// Returns sentences about the parameters that `param` needs or excludes, and "Repeatable." if it is.
-std::string relations(const JobParam& param);
+std::string relations_text(const JobParam& param);
 /// Returns `doc` with choices, unit, range, default and relations: the text of help, man pages, docs/commands.md and
 /// docstrings.
-std::string documented(const JobParam& param);
+std::string parameter_help(const JobParam& param);
 
 /// Spelling of a parameter's name in a front end: --time-limit, time_limit=.
 using Spelling = std::string (*)(std::string_view name);
@@ -138,7 +138,7 @@ class Arguments {
 
 /// Returns what may be meant by a list of numbers that is refused, as the end of an error message; "" if nothing is
 /// known: a descending range with a step above 0, and micrometres if `unit` is nm.
-std::string hint_of(std::string_view text, std::string_view unit);
+std::string range_hint(std::string_view text, std::string_view unit);
 
 /// Parses a list of numbers: `8`, `0,8,30`, `0:180:1` (first:last:step, both ends included), or ranges among numbers.
 /// Returns nullopt if the text has another form.

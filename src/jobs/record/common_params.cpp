@@ -103,8 +103,8 @@ std::string wavelengths_text(const Arguments& args) {
   const auto numbers = parse_numbers(text);
   if (!numbers)
     fail({}, "{}: {} is neither a list of wavelengths, as in 450,550 or 400:700:10, nor a plug-in{}",
-         args.spelled("wavelengths"), text, hint_of(text, "nm"));
-  if (const std::string hint = hint_of(text, "nm"); !hint.empty())
+         args.spelled("wavelengths"), text, range_hint(text, "nm"));
+  if (const std::string hint = range_hint(text, "nm"); !hint.empty())
     fail({}, "{}: {} nm was given{}", args.spelled("wavelengths"), text, hint);
   return fmt::format("bands,wavelengths={}", fmt::join(*numbers, ","));
 }

@@ -31,7 +31,7 @@ std::vector<std::string> kept_words(const SceneInMemory& scene, const Arguments&
 }
 
 /// Whether the job takes the scene's value of a parameter. Wavelengths of colours are none of a measurement's bands.
-bool takes(const SceneInMemory& scene, const Arguments& args, const JobParam& p) {
+bool inherits(const SceneInMemory& scene, const Arguments& args, const JobParam& p) {
   if (!args.declares(p.name) || p.name == "strict" || p.positional) return false;
   for (const JobParam* other : args.params())
     if (args.given(other->name) && excludes(*other, p)) return false;
@@ -86,7 +86,7 @@ std::map<size_t, GivenScene> given_scenes(const std::map<size_t, SceneInMemory>&
       if (p->positional || p->name == "strict" || !loaded.given(p->name)) continue;
       if (scenes.size() > 1 || !args.declares(p->name)) {
         left.set(p->name, loaded.words(p->name));
-      } else if (takes(scene, args, *p)) {
+      } else if (inherits(scene, args, *p)) {
         std::vector<std::string> words = kept_words(scene, args, p->name);
         if (args.given(p->name)) words.insert(words.end(), args.words(p->name).begin(), args.words(p->name).end());
         args.set(p->name, words);

@@ -17,7 +17,7 @@ std::string kind_of(std::string_view message) {
 }
 
 /// Returns the text of the counts.
-std::string more(size_t repeats, size_t alike) {
+std::string counts_text(size_t repeats, size_t alike) {
   std::string text;
   if (repeats > 0) text += fmt::format(" and at {} more location{}", repeats, repeats == 1 ? "" : "s");
   if (alike > 0) text += fmt::format(" and {} more like it", alike);
@@ -57,7 +57,7 @@ void StrictLog::warn(const Location& where, std::string_view message) const {
 /// Counts are reset, so that each is logged once.
 void StrictLog::show_repeats() const {
   for (Warning& w : warnings_) {
-    if (w.repeats > 0 || w.alike > 0) to_.warn(w.first, w.message + ": here" + more(w.repeats, w.alike));
+    if (w.repeats > 0 || w.alike > 0) to_.warn(w.first, w.message + ": here" + counts_text(w.repeats, w.alike));
     w.repeats = w.alike = 0;
   }
 }

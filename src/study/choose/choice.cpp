@@ -100,15 +100,15 @@ class Chooser {
   }
 
   /// Whether the limit allows this number of samples in so many configurations.
-  bool affords(uint64_t samples, size_t configurations) const {
+  bool is_within_limit(uint64_t samples, size_t configurations) const {
     return 2 * double(samples) * double(pilot_.pixels()) * double(configurations) <= limit_;
   }
 
   Configuration selected() {
     // The reference, each option alone, and a combination.
     if (singles_.empty()) return use_reference(Choice::Ground::reference);
-    if (!affords(kFirstSamples, singles_.size() + 2)) return use_reference(Choice::Ground::no_gain);
-    screen();
+    if (!is_within_limit(kFirstSamples, singles_.size() + 2)) return use_reference(Choice::Ground::no_gain);
+    screen_options();
     return search();
   }
 
@@ -133,17 +133,18 @@ class Chooser {
   }
 
   /// Renders every single option until its bias is known well enough to select by.
-  void screen() {
+  void screen_options() {
     for (samples_ = kFirstSamples;; samples_ *= 2) {
       pilot_.render(reference_, samples_);
       for (const Configuration& s : singles_) pilot_.render(s, samples_);
-      if (samples_ >= kMostScreening || std::ranges::all_of(singles_, [this](const auto& s) { return is_clear(s); }) ||
-          !affords(2 * samples_, singles_.size() + 2))
+      if (samples_ >= kMostScreening ||
+          std::ranges::all_of(singles_, [this](const auto& s) { return has_small_error(s); }) ||
+          !is_within_limit(2 * samples_, singles_.size() + 2))
         break;
     }
   }
 
-  bool is_clear(const Configuration& single) const {
+  bool has_small_error(const Configuration& single) const {
     const Estimate e = mean_square(pilot_.difference(single, reference_));
     return e.standard_error() < std::max(request(), e.mean) / 8;
   }
@@ -249,7 +250,7 @@ class Chooser {
       const bool helps = b.uncertainty < 0.8 * last;  // variation among pixels does not decrease with samples
       const bool told = known.low > request() || (met && (sharp || !helps));
       last = b.uncertainty;
-      if (!told && grow(b.uncertainty)) continue;
+      if (!told && add_samples(b.uncertainty)) continue;
       choice_.out_of_samples = choice_.out_of_samples || (!told && !met);
       choice_.trials.push_back({names_of(answers), {root(known.low), root(known.high)}, samples});
       return met;
@@ -263,7 +264,7 @@ class Chooser {
   }
 
   /// The noise of a squared bias falls as 1 / samples, or faster if few pixels contribute most of it.
-  bool grow(double uncertainty) {
+  bool add_samples(double uncertainty) {
     constexpr double kAtMostFaster = 8;
     const uint64_t limit = std::max(samples_, most_samples());
     const double at_limit = uncertainty * double(samples_) / double(limit);
@@ -349,7 +350,7 @@ std::optional<Chosen> choose_models(const ChoiceTask& task, const Ladder& ladder
     return {};
   }
   Chooser chooser(pilot, task.is_question);
-  put_answers(pilot.open_choices(), chooser.run(), registry, task.description);
+  apply_answers(pilot.open_choices(), chooser.run(), registry, task.description);
   return Chosen{chooser.choice(), pilot.scene()};
 }
 

@@ -82,8 +82,8 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
   return leaves;
 }
 
-void put_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
-                 SceneSettings& description) {
+void apply_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
+                   SceneSettings& description) {
   for (size_t q = 0; q < open_choices.size(); ++q) {
     const ModelOption& answer = open_choices[q].options[answers[q]];
     if (!open_choices[q].is_leaf()) set_wavelengths(description, answer.name);

@@ -51,7 +51,7 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
 
 /// Writes the options into the description's leaves, starting from their original parameters, and into its option of
 /// wavelengths.
-void put_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
-                 SceneSettings& description);
+void apply_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
+                   SceneSettings& description);
 
 }  // namespace frond::choose

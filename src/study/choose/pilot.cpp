@@ -60,7 +60,7 @@ Pilot::Pilot(const ChoiceTask& task, const Ladder& ladder)
   SceneDescription& description = task.description;
   if (!names_wavelengths(description)) {
     open_choices_.push_back({"wavelengths", {}, {}, ladder.wavelengths});
-    put_answers(open_choices_, reference(), registry, description);
+    apply_answers(open_choices_, reference(), registry, description);
   }
   scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache(), task.other,
                                          &shared_);
@@ -88,7 +88,7 @@ Configuration Pilot::reference() const {
 Pilot::Render Pilot::make(const Configuration& answers) {
   Session& session = task_.session;
   variant_.materials = task_.description.materials;
-  put_answers(open_choices_, answers, session.registry(), variant_);
+  apply_answers(open_choices_, answers, session.registry(), variant_);
   auto scene = std::make_unique<Scene>(variant_, session.registry(), session.pool(), quiet_, session.cache(),
                                        scene_.get(), &shared_);
   const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };

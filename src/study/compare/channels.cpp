@@ -36,7 +36,9 @@ class White {
   }
 
   /// Returns the value in a band; for a band with a response, the mean weighted by it.
-  double in(const Band& band) const { return band.response.empty() ? at(band.nm) : under(band.response); }
+  double band_value(const Band& band) const {
+    return band.response.empty() ? at(band.nm) : response_mean(band.response);
+  }
 
  private:
   struct Share {
@@ -50,7 +52,7 @@ class White {
     return sum;
   }
 
-  double under(std::span<const ResponsePoint> response) const {
+  double response_mean(std::span<const ResponsePoint> response) const {
     double sum = 0;
     for (const Share& light : lights_) sum += light.weight * mean_under(response, *light.emission);
     return sum;
@@ -90,7 +92,7 @@ ChannelList bands_of(const Scene& scene) {
   const White white(scene);
   for (const Band& band : list.bands) {
     list.names.push_back(name_of(band));
-    list.white.push_back(white.in(band));
+    list.white.push_back(white.band_value(band));
     if (!(list.white.back() > 0))
       fail({}, "the scene's lights give no light in the band {}: there is nothing to compare", name_of(band));
   }

@@ -35,7 +35,7 @@ struct Try {
 
 /// Interpolates the cutoff at the target, linearly in logarithms. The result stays well inside the interval, because
 /// the ratio has steps where many paths have the same attenuation.
-double between(const Try& low, const Try& high) {
+double interpolate_cutoff(const Try& low, const Try& high) {
   const double t = std::clamp(low.miss / (low.miss - high.miss), 0.1, 0.9);
   return std::exp(std::lerp(low.log_cutoff, high.log_cutoff, t));
 }
@@ -60,7 +60,7 @@ class Search {
 
   /// Returns the next cutoff to try; nullopt if there is none.
   std::optional<double> next() const {
-    if (low_ && high_) return between(*low_, *high_);
+    if (low_ && high_) return interpolate_cutoff(*low_, *high_);
     if (halvings_left_ > 0) return std::sqrt(before_.cutoff * after_.cutoff);
     const double step = std::copysign(std::ldexp(kFirstStep, std::max(0, steps_ - kSmallSteps)), before_.miss);
     const double cutoff = std::clamp(std::exp(before_.log_cutoff + step), kSmallest, kLargest);

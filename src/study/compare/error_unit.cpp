@@ -2,11 +2,11 @@
 
 namespace frond::compare {
 
-std::string ErrorUnit::of_data(const ChannelList& channels) const {
+std::string ErrorUnit::data_unit(const ChannelList& channels) const {
   return relative_ ? "mean of the reference over the same pixels in the same channel (0.01 is 1 %)" : channels.unit;
 }
 
-std::string ErrorUnit::of_axis(const ChannelList& channels) const {
+std::string ErrorUnit::axis_unit(const ChannelList& channels) const {
   return relative_ ? "% of the reference’s mean" : channels.unit;
 }
 
@@ -18,7 +18,7 @@ std::string ErrorUnit::rounded(double error) const {
   return relative_ ? figures(100 * error, 2) + " %" : fmt::format("{:.2g}", error);
 }
 
-std::string ErrorUnit::as_asked(double error) const {
+std::string ErrorUnit::in_argument_unit(double error) const {
   return relative_ ? fmt::format("{:g} %", 100 * error) : fmt::format("{:g}", error);
 }
 

@@ -16,10 +16,10 @@ class ErrorUnit {
 
   bool is_relative() const { return relative_; }
   /// Returns the unit of errors in data files.
-  std::string of_data(const ChannelList& channels) const;
+  std::string data_unit(const ChannelList& channels) const;
   /// Returns the unit of errors on a chart's axis.
-  std::string of_axis(const ChannelList& channels) const;
-  double on_axis(double error) const { return relative_ ? 100 * error : error; }
+  std::string axis_unit(const ChannelList& channels) const;
+  double axis_value(double error) const { return relative_ ? 100 * error : error; }
   /// Returns "an RMS" or "a relative RMS".
   std::string rms() const { return relative_ ? "a relative RMS" : "an RMS"; }
 
@@ -29,7 +29,7 @@ class ErrorUnit {
   /// Returns the error with two significant figures.
   std::string rounded(double error) const;
   /// Returns the error in the unit of arguments.
-  std::string as_asked(double error) const;
+  std::string in_argument_unit(double error) const;
 
  private:
   bool relative_;

@@ -181,8 +181,8 @@ std::vector<uint64_t> ladder(uint64_t first, uint64_t top) {
   return runs;
 }
 
-void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Bench& bench, const ThreadPool& pool,
-             const Log& log, CandidateResult& measured) {
+void measure_at(uint64_t samples, PairedRender& render, const Plan& plan, const Bench& bench, const ThreadPool& pool,
+                const Log& log, CandidateResult& measured) {
   render.advance_to(samples, pool, plan.progress);
   measured.runs.push_back(bench.run(render));
   const CandidateRun& r = measured.runs.back();
@@ -191,15 +191,15 @@ void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Ben
                        r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
 }
 
-void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
-           const Log& log, Comparison& result) {
+void measure_candidates(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench,
+                        const ThreadPool& pool, const Log& log, Comparison& result) {
   const auto runs = ladder(first_samples(renders.front().scene()), plan.top_samples);
   // An early image has about a sixteenth of the samples of the last one.
   result.early_samples = runs[runs.size() > 5 ? runs.size() - 5 : 0];
   for (const uint64_t samples : runs)
     for (size_t i = 0; i < renders.size(); ++i) {
       CandidateResult& measured = result.candidates[i];
-      step_to(samples, renders[i], plan, bench, pool, log, measured);
+      measure_at(samples, renders[i], plan, bench, pool, log, measured);
       if (samples == result.early_samples) measured.early = bench.shown_first(renders[i]);
     }
   for (size_t i = 0; i < renders.size(); ++i) {
@@ -212,12 +212,12 @@ void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& be
 /// more samples.
 constexpr uint64_t kTimingSamples = 8, kPilotFactor = 4;
 
-void time_in_the_papers_manner(const Study& study, const Plan& plan, Comparison& result) {
+void time_published_method(const Study& study, const Plan& plan, Comparison& result) {
   const uint64_t samples = std::min(kTimingSamples, plan.top_samples);
   const PaperManner manner(study, plan.candidates.front(), kPilotFactor * samples);
   std::vector<std::pair<PaperTiming*, PairedRender>> renders;
   for (CandidateResult& measured : result.candidates)
-    if ((measured.paper = manner.of(measured.candidate)))
+    if ((measured.paper = manner.timing(measured.candidate)))
       renders.emplace_back(&*measured.paper, pair_of(study, measured.paper->candidate, kTimingSeed));
   for (uint64_t n = 1; n <= samples; ++n)
     for (auto& [timing, render] : renders) render.advance_to(n, study.session().pool(), {});
@@ -252,8 +252,8 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request)
     result.candidates.push_back({.candidate = plan.candidates[i],
                                  .wavelengths = renders[i].scene().wavelengths_name(),
                                  .setup_cpu_seconds = renders[i].setup_cpu_seconds()});
-  climb(renders, plan, bench, pool, log, result);
-  time_in_the_papers_manner(study, plan, result);
+  measure_candidates(renders, plan, bench, pool, log, result);
+  time_published_method(study, plan, result);
   return result;
 }
 

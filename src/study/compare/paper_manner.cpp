@@ -35,7 +35,7 @@ std::optional<Candidate> ended_by_attenuation(Candidate c, const Study& study) {
   return c;
 }
 
-PluginText with_end(PluginText integrator, double cutoff, double depth) {
+PluginText with_termination(PluginText integrator, double cutoff, double depth) {
   set(integrator, "cutoff", fmt::format("{:.3g}", cutoff));
   set(integrator, "maxdepth", fmt::format("{:.0f}", std::ceil(depth)));
   return integrator;
@@ -51,8 +51,8 @@ class CutoffRenders {
         scene_(study.scene(candidate)),
         sampler_(study.sampler(*scene_, study.seed())) {}
 
-  PathEnds ends_with(double cutoff) const {
-    const auto integrator = study_.integrator(*scene_, with_end(integrator_, cutoff, PathEnds::kDepths - 1));
+  PathEnds measure_path_ends(double cutoff) const {
+    const auto integrator = study_.integrator(*scene_, with_termination(integrator_, cutoff, PathEnds::kDepths - 1));
     Film film({.settings = study_.film(), .bands = scene_->wavelengths().bands().size()});
     const RenderJob job = job_of(*scene_, *integrator, *sampler_, study_.seed());
     return render(job, plan_of(film, {0, samples_}), film, study_.session().pool()).ends;
@@ -72,18 +72,18 @@ PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t
     : study_(study), pilot_samples_(pilot_samples) {
   const auto candidate = ended_by_attenuation(baseline, study);
   if (!candidate) return;
-  const PathEnds ends = CutoffRenders(study, *candidate, pilot_samples).ends_with(kPaperCutoff);
+  const PathEnds ends = CutoffRenders(study, *candidate, pilot_samples).measure_path_ends(kPaperCutoff);
   depth_ = depth_of_trees(ends);
   target_ = unshot_ratio(ends, depth_);
 }
 
-std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
+std::optional<PaperTiming> PaperManner::timing(const Candidate& candidate) const {
   auto c = ended_by_attenuation(candidate, study_);
   if (!c || depth_ == 0) return {};
   const CutoffRenders pilot(study_, *c, pilot_samples_);
   const CutoffFit end =
-      fit_cutoff(target_, [&](double cutoff) { return unshot_ratio(pilot.ends_with(cutoff), depth_); });
-  c->integrator = with_end(*c->integrator, end.cutoff, depth_);
+      fit_cutoff(target_, [&](double cutoff) { return unshot_ratio(pilot.measure_path_ends(cutoff), depth_); });
+  c->integrator = with_termination(*c->integrator, end.cutoff, depth_);
   c->text = text_of(*c);
   return PaperTiming{*c, depth_, end};
 }

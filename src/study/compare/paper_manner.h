@@ -16,7 +16,7 @@ class PaperManner {
   PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples);
 
   /// Returns the timing to make; nullopt if the integrator of the scene or the candidate has no cutoff.
-  std::optional<PaperTiming> of(const Candidate& candidate) const;
+  std::optional<PaperTiming> timing(const Candidate& candidate) const;
 
  private:
   const Study& study_;

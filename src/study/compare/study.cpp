@@ -30,7 +30,7 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
 std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
 
 /// Candidates replace open leaves, so their requests are removed.
-void drop_requests(SceneSettings& description, const Registry& registry) {
+void remove_error_requests(SceneSettings& description, const Registry& registry) {
   for (MaterialDescription& m : description.materials)
     if (m.plugin.name == open_leaf(registry).name)
       std::erase_if(m.plugin.params, [](const ParsedParam& p) { return p.name == "maxrms" || p.name == "model"; });
@@ -54,7 +54,7 @@ Study::Study(Session& session, SceneDescription description, const StudyOptions&
   apply_overrides({.wavelengths = options.wavelengths, .seed = options.seed}, description_, registry(), session.log());
   resize(description_.film, session.film(description_), options.size);
   film_ = session.film(description_);
-  drop_requests(description_, registry());
+  remove_error_requests(description_, registry());
   leaves_ = options.leaves.empty() ? leaf_names(description_, registry()) : options.leaves;
   if (leaves_.empty()) fail({}, "{}: none of the materials is a leaf; --leaf names the one to replace", options.scene);
   if (options.leaves.empty()) swaps_.push_back({"*", {}});

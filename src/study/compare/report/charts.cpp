@@ -24,7 +24,7 @@ std::vector<ChartPoint> points_of(const CandidateResult& measured, Measure measu
     const MeanSquare& e = run.errors[measure == Measure::rms_leaf ? kLeaf : kAll][kTogether].total;
     ChartPoint p{run.cost.cpu_seconds, run.flip.value_or(0)};
     if (measure != Measure::flip)
-      p.y = unit.on_axis(e.root()), p.bar = {unit.on_axis(e.root_at(-kZ95)), unit.on_axis(e.root_at(kZ95))};
+      p.y = unit.axis_value(e.root()), p.bar = {unit.axis_value(e.root_at(-kZ95)), unit.axis_value(e.root_at(kZ95))};
     if (p.x > 0 && p.y > 0) points.push_back(p);
   }
   return points;
@@ -60,8 +60,8 @@ double mean_step_nm(const ChannelList& channels) {
 
 /// Returns the bias in the axis's unit with its 95 % interval; NaN if it is not above 0 with 97.5 % confidence.
 ChartPoint bias_point(double nm, const MeanSquare& bias, const ErrorUnit& unit) {
-  const Range bar{unit.on_axis(bias.root_at(-kZ95)), unit.on_axis(bias.root_at(kZ95))};
-  return {nm, bar.low > 0 ? unit.on_axis(bias.root()) : NAN, bar};
+  const Range bar{unit.axis_value(bias.root_at(-kZ95)), unit.axis_value(bias.root_at(kZ95))};
+  return {nm, bar.low > 0 ? unit.axis_value(bias.root()) : NAN, bar};
 }
 
 std::string rms_caption(const Comparison& c) {
@@ -100,7 +100,7 @@ std::optional<Chart> curves_chart(const Comparison& c, Measure measure) {
     const std::string end =
         fmt::format("{}\nbias {}, from {} s on", s.end, unit.rounded(plateau->y), figures(plateau->x, 2));
     s.end.clear();
-    plateau->y = unit.on_axis(plateau->y);
+    plateau->y = unit.axis_value(plateau->y);
     x.include(plateau->x), y.include(plateau->y);
     // A cross, and a dotted line to the label.
     plateaus.push_back(marks("", s.color, Mark::cross, 5.5, {*plateau}));
@@ -110,7 +110,7 @@ std::optional<Chart> curves_chart(const Comparison& c, Measure measure) {
   std::vector<Series> all{frontier(curves)};
   if (all[0].points.empty()) return {};
   all.insert(all.end(), curves.begin(), curves.end()), all.insert(all.end(), plateaus.begin(), plateaus.end());
-  const std::string pixels = measure == Measure::rms_leaf ? "leaf" : "all", unit_text = unit.of_axis(c.channels),
+  const std::string pixels = measure == Measure::rms_leaf ? "leaf" : "all", unit_text = unit.axis_unit(c.channels),
                     time = fmt::format("CPU time of one {} × {} render (s)", c.width, c.height),
                     error = measure == Measure::flip ? "mean FLIP"
                                                      : fmt::format("RMS error, {} pixels ({})", pixels, unit_text);
@@ -130,7 +130,7 @@ std::optional<Chart> bands_chart(const Comparison& c) {
            bias = candidate_series(i, c.candidates[i].candidate.label);
     for (size_t b = 0; b < bands.size(); ++b) {
       const RenderError& e = c.candidates[i].runs.back().errors[kAll][kFirst + b];
-      noise.points.push_back({bands[b].nm, unit.on_axis(e.noise.root())});
+      noise.points.push_back({bands[b].nm, unit.axis_value(e.noise.root())});
       bias.points.push_back(bias_point(bands[b].nm + aside, e.bias, unit));
       for (const double v : {noise.points.back().y, bias.points.back().bar.low, bias.points.back().bar.high})
         if (v > 0) y.include(v);
@@ -145,7 +145,7 @@ std::optional<Chart> bands_chart(const Comparison& c) {
   series.push_back(line(fmt::format("noise of one render of {} samples", samples), "#000000", 2, Dash::dotted));
   const Interval all = range_nm(c.channels);
   const Range nm{all.min - step_nm, all.max + step_nm};
-  const std::string error = fmt::format("bias and noise ({})", unit.of_axis(c.channels));
+  const std::string error = fmt::format("bias and noise ({})", unit.axis_unit(c.channels));
   return Chart{1, {{900, 520, "", {"wavelength (nm)", nm}, {error, y, true}, false, series}}};
 }
 

@@ -112,7 +112,7 @@ std::vector<Fact> facts_of(const Comparison& c) {
                           {"width", double(c.width)},
                           {"height", double(c.height)},
                           {"foliar_ratio", c.foliar_ratio},
-                          {"unit", c.request.error_unit().of_data(c.channels)},
+                          {"unit", c.request.error_unit().data_unit(c.channels)},
                           {"leaf_materials", fmt::format("{}", fmt::join(c.leaves, ", "))},
                           {"wall_seconds", c.wall_seconds},
                           {"cpu_seconds", c.cpu_seconds},
@@ -141,7 +141,7 @@ ComparisonData data_of(const Comparison& c) {
       {c.command, std::string("frond ") + FROND_VERSION,
        "One render of so many samples per pixel: its time, and how far it is from what the reference converges to.",
        fmt::format("Unit: {}; {}: root of the mean square of all the film's channels; leaf: pixels that see a leaf.",
-                   c.request.error_unit().of_data(c.channels), c.channels.names[kTogether]),
+                   c.request.error_unit().data_unit(c.channels), c.channels.names[kTogether]),
        fmt::format("rms = bias and noise; rms_clipped: of images clipped to [0, 1]; _low, _high: 95 % intervals; "
                    "flip: mean FLIP{}.",
                    c.channels.are_bands() ? ", none of bands" : "")}};

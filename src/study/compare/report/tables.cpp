@@ -106,7 +106,7 @@ std::string table_2(const Comparison& c) {
 
 std::string offer_table(const Comparison& c, double rms, const char* note) {
   const ErrorUnit unit = c.request.error_unit();
-  Table table{fmt::format("{} of {}", unit.is_relative() ? "A relative RMS" : "An RMS", unit.as_asked(rms))};
+  Table table{fmt::format("{} of {}", unit.is_relative() ? "A relative RMS" : "An RMS", unit.in_argument_unit(rms))};
   for (const CandidateCost& o : candidate_costs(c, rms, simultaneous_z(c))) {
     table.add("candidate", c.candidates[o.candidate].candidate.label);
     table.add("samples per pixel", o.effort  ? fmt::format("{:.0f}", std::ceil(o.effort->samples))
@@ -124,14 +124,15 @@ constexpr const char* kOffersNote =
 constexpr int kDecimals = 4;
 
 /// Returns the value and the upper end of its interval.
-std::string bounded(const ErrorUnit& unit, const MeanSquare& m) {
+std::string value_with_bound(const ErrorUnit& unit, const MeanSquare& m) {
   return fmt::format("{} (≤ {})", unit.fixed(m.root(), kDecimals), unit.fixed(m.root_at(kZ95), kDecimals));
 }
 
 std::string worst_band(const Comparison& c, const std::vector<RenderError>& e) {
   const auto films = std::span(e).subspan(kFirst, c.channels.film_channels());
   const auto worst = std::ranges::max_element(films, {}, [](const RenderError& r) { return r.bias.value; });
-  return c.channels.names[kFirst + size_t(worst - films.begin())] + ": " + bounded(c.request.error_unit(), worst->bias);
+  return c.channels.names[kFirst + size_t(worst - films.begin())] + ": " +
+         value_with_bound(c.request.error_unit(), worst->bias);
 }
 
 std::string error_note(const Comparison& c) {
@@ -163,7 +164,7 @@ std::string error_table(const Comparison& c, Region region) {
     if (c.channels.are_bands()) {
       table.add("RMS\nall bands", fixed(e[kTogether].total));
       table.add("noise\nall bands", fixed(e[kTogether].noise));
-      table.add("bias\nall bands", bounded(unit, e[kTogether].bias));
+      table.add("bias\nall bands", value_with_bound(unit, e[kTogether].bias));
       table.add("largest bias\nof a band", worst_band(c, e));
       continue;
     }
@@ -173,7 +174,7 @@ std::string error_table(const Comparison& c, Region region) {
     table.add("noise\nR G B", triple(&RenderError::noise));
     table.add("bias\nR G B", triple(&RenderError::bias));
     table.add("bias ≤ (95 %)\nR G B", triple(&RenderError::bias, kZ95));
-    table.add("bias\nluminance", bounded(unit, e[c.channels.luminance()].bias));
+    table.add("bias\nluminance", value_with_bound(unit, e[c.channels.luminance()].bias));
     table.add("RMS\nluminance", fixed(e[c.channels.luminance()].total));
     if (region == kAll) table.add("FLIP", fmt::format("{:.4f}", s.runs.back().flip.value_or(0)));
   }
@@ -188,7 +189,7 @@ std::string band_table(const Comparison& c) {
   for (const CandidateResult& s : c.candidates) {
     std::vector<std::string> texts;
     for (const RenderError& e : std::span(s.runs.back().errors[kAll]).subspan(kFirst, c.channels.bands.size()))
-      texts.push_back(bounded(c.request.error_unit(), e.bias));
+      texts.push_back(value_with_bound(c.request.error_unit(), e.bias));
     table.columns.push_back({s.candidate.label, texts});
   }
   return "<details><summary>Bias band by band</summary>" +

@@ -24,13 +24,13 @@ std::string effort_text(const Effort& e) {
 }
 
 /// Whether the candidate's cost is within the few per cent by which times of one program vary.
-bool holds(const std::vector<CandidateCost>& all, size_t candidate) {
+bool is_near_cheapest(const std::vector<CandidateCost>& all, size_t candidate) {
   constexpr double kMargin = 1.05;
   const auto own = std::ranges::find(all, candidate, &CandidateCost::candidate);
   return cost_of(*own) <= kMargin * cost_of(all.front());
 }
 
-std::string answer(const Comparison& c, double rms) {
+std::string answer_text(const Comparison& c, double rms) {
   const ErrorUnit unit = c.request.error_unit();
   const double z = simultaneous_z(c);
   const auto all = candidate_costs(c, rms, z);
@@ -40,10 +40,10 @@ std::string answer(const Comparison& c, double rms) {
     const auto least = std::ranges::min_element(c.candidates, {}, most);
     return fmt::format(
         "None of the candidates meets {} of {} with 95 % confidence: the bias of {}, the least, may be up to {}.",
-        unit.rms(), unit.as_asked(rms), least->candidate.label, unit.rounded(most(*least)));
+        unit.rms(), unit.in_argument_unit(rms), least->candidate.label, unit.rounded(most(*least)));
   }
   std::string text = fmt::format("{} is enough for {} of {}, with 95 % confidence: {}", label(c, best.candidate),
-                                 unit.rms(), unit.as_asked(rms), effort_text(*best.effort));
+                                 unit.rms(), unit.in_argument_unit(rms), effort_text(*best.effort));
   for (const CandidateCost& other : all) {
     if (other.candidate == best.candidate) continue;
     text += "; " + label(c, other.candidate);
@@ -98,7 +98,8 @@ std::vector<CheapestRange> cheapest_ranges(const Comparison& c) {
     const double rms = largest * std::pow(smallest / largest, double(i) / kSteps);
     const auto all = candidate_costs(c, rms, 0);
     if (!all.front().effort) break;
-    if (result.empty() || !holds(all, result.back().candidate)) result.push_back({all.front().candidate, rms, rms});
+    if (result.empty() || !is_near_cheapest(all, result.back().candidate))
+      result.push_back({all.front().candidate, rms, rms});
     result.back().rms_to = rms;
   }
   return result;
@@ -107,7 +108,7 @@ std::vector<CheapestRange> cheapest_ranges(const Comparison& c) {
 std::string verdict(const Comparison& c) {
   if (c.request.rms.empty()) return overview(c);
   std::string text;
-  for (const double rms : c.request.rms) text += (text.empty() ? "" : "\n") + answer(c, rms);
+  for (const double rms : c.request.rms) text += (text.empty() ? "" : "\n") + answer_text(c, rms);
   return c.leaf_by_leaf.empty() ? text : text + '\n' + c.leaf_by_leaf;
 }
 
