@@ -181,7 +181,7 @@ bool ModelFiles::Exists(const char* name) const {
 }
 
 /// Remembers a message. A hostile file may name any number of files, with names of any length.
-void ModelFiles::refuse(const char* name, const std::string& problem) {
+void ModelFiles::reject(const char* name, const std::string& problem) {
   constexpr size_t kLongest = 200, kMost = 20;  // of messages
   const std::string message = "\"" + std::string(name).substr(0, kLongest) + "\" is not read: " + problem;
   if (refusals_.size() < kMost && std::ranges::find(refusals_, message) == refusals_.end())
@@ -199,7 +199,7 @@ Assimp::IOStream* ModelFiles::Open(const char* name, const char* mode) {
   if (problem.empty() && *mode != 'r') problem = "files are not written";
   if (problem.empty() && !(file = std::fopen(path.c_str(), "rb"))) problem = "it cannot be opened";
   if (!problem.empty()) {
-    refuse(name, problem);
+    reject(name, problem);
     return nullptr;
   }
   if (is_obj_) {

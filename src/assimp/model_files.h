@@ -49,7 +49,7 @@ class ModelFiles final : public Assimp::IOSystem {
  private:
   /// Returns the file's path, or an empty one if it must not be read.
   std::filesystem::path permitted(const char* name, std::string* problem) const;
-  void refuse(const char* name, const std::string& problem);
+  void reject(const char* name, const std::string& problem);
   /// Raises the limits by a file, once.
   void allow(const std::filesystem::path& path);
   /// Returns the content of a file, whose name was permitted.

@@ -47,7 +47,7 @@ class GltfCheck {
     }
     if (asset && !text(*asset, "minVersion").empty() && text(*asset, "minVersion") != "2.0")
       throw std::runtime_error("it needs a reader of glTF " + std::string(text(*asset, "minVersion")));
-    refuse_required();
+    reject_required();
     check_properties("glTF", document_);
     if (const Json* animations = member(document_, "animations"); animations && animations->size() > 1)
       losses_.add("animation", animations->size() - 1);
@@ -60,7 +60,7 @@ class GltfCheck {
   }
 
  private:
-  void refuse_required() const {
+  void reject_required() const {
     std::string names;
     size_t count = 0;
     for (const std::string& name : texts_of(document_, "extensionsRequired"))

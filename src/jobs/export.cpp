@@ -103,14 +103,14 @@ void check_options(const Arguments& args, bool is_scene) {
   constexpr std::string_view kOfMaterials[] = {"angles", "view-angles", "view-azimuths", "rays", "seed"},
                              kOfScenes[] = {"swap", "ignore-unsupported"};
   Problems problems;
-  const auto refuse = [&](std::string_view name, std::string_view what) {
+  const auto reject = [&](std::string_view name, std::string_view what) {
     if (args.given(name))
       problems.add(InputError({}, fmt::format("{} {} {} mitsuba", args.spelled(name), what, args.spelled("format"))));
   };
   for (const std::string_view name : kOfMaterials)
-    if (is_scene) refuse(name, "has no effect with");
+    if (is_scene) reject(name, "has no effect with");
   for (const std::string_view name : kOfScenes)
-    if (!is_scene) refuse(name, "is for");
+    if (!is_scene) reject(name, "is for");
   problems.check();
 }
 

@@ -60,14 +60,14 @@ constexpr JobParam kParams[] = {
 /// Resolver for a table's parameters, which must be constants: it refuses textures and other references.
 class NoReferences final : public ParamResolver {
  public:
-  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { refuse(); }
-  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { refuse(); }
-  std::shared_ptr<Material> material(const std::string&, const Location&) override { refuse(); }
-  SpectrumPtr spectrum(const ParsedParam&, SpectrumUse) override { refuse(); }
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { reject(); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { reject(); }
+  std::shared_ptr<Material> material(const std::string&, const Location&) override { reject(); }
+  SpectrumPtr spectrum(const ParsedParam&, SpectrumUse) override { reject(); }
   std::filesystem::path file(const std::string& name, const Location&) override { return name; }
 
  private:
-  [[noreturn]] static void refuse() { fail({}, "the table of a leaf requires constant parameters, not textures"); }
+  [[noreturn]] static void reject() { fail({}, "the table of a leaf requires constant parameters, not textures"); }
 };
 
 /// Returns the parameters of the leaf, checked against the material's declarations.
@@ -212,7 +212,7 @@ Result make_leaf_file(const JobRun& run, const Params& params) {
 
 /// Throws InputError for a given parameter that has no effect on this type of table. `use` names the type that it
 /// applies to.
-void refuse(const Arguments& args, std::initializer_list<std::string_view> names, const std::string& use) {
+void reject(const Arguments& args, std::initializer_list<std::string_view> names, const std::string& use) {
   for (const std::string_view name : names)
     if (args.given(name)) fail({}, "{} is for {}", args.spelled(name), use);
 }
@@ -221,9 +221,9 @@ void refuse(const Arguments& args, std::initializer_list<std::string_view> names
 Result table(const JobRun& run) {
   const TableLeaf leaf = leaf_of(run);
   const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
-  if (!leaf.has_modes() || !is_leaf_file) refuse(run.args, {"depths"}, "a .leaf file");
+  if (!leaf.has_modes() || !is_leaf_file) reject(run.args, {"depths"}, "a .leaf file");
   if (leaf.has_modes()) {
-    refuse(run.args, {"method", "angles", "rays", "seed", "equalsides"},
+    reject(run.args, {"method", "angles", "rays", "seed", "equalsides"},
            fmt::format("tables of {}; those of {} follow from its \"tolerance\"",
                        model_with(LeafModel::Table::shares, run.session().registry()).name, leaf.model.name));
     const Params params = params_of(leaf.model, leaf.text);
@@ -231,9 +231,9 @@ Result table(const JobRun& run) {
   }
   const std::string method = run.args.spelled("method");
   if (run.args.text("method") == "montecarlo")
-    refuse(run.args, {"nodes"}, method + " solve");
+    reject(run.args, {"nodes"}, method + " solve");
   else
-    refuse(run.args, {"rays", "seed"}, method + " montecarlo");
+    reject(run.args, {"rays", "seed"}, method + " montecarlo");
   return make_shares_file(run, leaf);
 }
 

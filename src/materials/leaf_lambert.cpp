@@ -129,7 +129,7 @@ class LeafLambert final : public Material {
         incidences_(incidences(p)),
         file_(p, {}) {
     table_of_file_ = file_.read(p, 0);
-    if (!table_of_file_) leaf_.refuse_wall_textures(p);
+    if (!table_of_file_) leaf_.reject_wall_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {

@@ -154,7 +154,7 @@ const LeafParams::Aspect& LeafParams::aspect(double TissueParams::*member) const
   return found == aspects_.end() ? none : found->second;
 }
 
-void LeafParams::refuse_wall_textures(const Params& p) const {
+void LeafParams::reject_wall_textures(const Params& p) const {
   for (const auto& [number, texture] : aspects_)
     if (number->is_structure())
       fail(p.where(number->name), "{} takes no texture for \"{}\": each texel would need its own table; abm takes one",

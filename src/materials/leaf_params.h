@@ -60,7 +60,7 @@ class LeafParams {
 
   /// Throws InputError if a texture gives the aspect ratio of an inner wall: for materials whose tables hold for one
   /// tissue. The cuticle affects the surface alone.
-  void refuse_wall_textures(const Params& p) const;
+  void reject_wall_textures(const Params& p) const;
 
   /// Throws InputError if the optical constants or a pigment's data do not cover the wavelengths.
   void check_wavelengths(const WavelengthStrategy& wavelengths) const;

@@ -86,7 +86,7 @@ class LeafSimplified final : public Material {
     if (request_.method == leaf::TableMethod::solve) request_.params.cuticle_aspect = 0;
     request_.rays = p.integer("tablerays");
     table_of_file_ = file_.read(p, p.real("tablesurface"));
-    if (!table_of_file_) refuse_textures(p);
+    if (!table_of_file_) reject_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
@@ -129,8 +129,8 @@ class LeafSimplified final : public Material {
     return fixed_.lane_count == 0 ? &fixed_ : arena.make<leaf::TableSelection>(lookup_->select(lambda));
   }
 
-  void refuse_textures(const Params& p) const {
-    leaf_.refuse_wall_textures(p);
+  void reject_textures(const Params& p) const {
+    leaf_.reject_wall_textures(p);
     // Only the solver shares its work between depths (leaf/solve/solver.h).
     if (varies_ && request_.method == leaf::TableMethod::monte_carlo)
       fail(p.where("tablemethod"),

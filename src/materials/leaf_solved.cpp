@@ -43,7 +43,7 @@ class LeafSolved final : public Material {
       modes_of_file_ =
           std::make_shared<const leaf::ModeTableFile>(leaf::read_mode_table_file(file_.path(), file_.where()));
     else
-      leaf_.refuse_wall_textures(p);
+      leaf_.reject_wall_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {

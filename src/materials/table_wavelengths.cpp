@@ -37,14 +37,14 @@ void check_file_range(Interval in_file_nm, const WavelengthStrategy& strategy, c
     // Beyond `seen_nm` lie at most 3.2 % of the integral of a colour matching function under D65. The SMPTE wavelengths
     // are 455, 551 and 608 nm.
     constexpr Interval seen_nm{420, 680}, smpte_nm{455, 608};
-    const auto refuse = [&](const std::string& hint) {
+    const auto reject = [&](const std::string& hint) {
       fail(where, "\"{}\" is known from {} to {} nm, the render needs {} to {} nm; {}", name, in_file_nm.min,
            in_file_nm.max, needed_nm.min, needed_nm.max, hint);
     };
     if (reaches(in_file_nm, seen_nm))
-      refuse(fmt::format("--wavelengths hero,lambdamin={},lambdamax={} leaves out what the file lacks",
+      reject(fmt::format("--wavelengths hero,lambdamin={},lambdamax={} leaves out what the file lacks",
                          std::max(in_file_nm.min, needed_nm.min), std::min(in_file_nm.max, needed_nm.max)));
-    if (reaches(in_file_nm, smpte_nm)) refuse("--wavelengths smpte renders 608, 551 and 455 nm");
+    if (reaches(in_file_nm, smpte_nm)) reject("--wavelengths smpte renders 608, 551 and 455 nm");
   }
   check_range(in_file_nm, strategy, where, name);
 }

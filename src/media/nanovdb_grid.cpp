@@ -43,11 +43,11 @@ class Bytes {
   Bytes(std::string_view bytes, const std::string& file, const Location& where)
       : bytes_(bytes), file_(file), where_(where) {}
 
-  [[noreturn]] void refuse(const std::string& what) const { fail(where_, "NanoVDB file \"{}\": {}", file_, what); }
+  [[noreturn]] void reject(const std::string& what) const { fail(where_, "NanoVDB file \"{}\": {}", file_, what); }
   /// Refuses versions whose layouts differ.
   void check_version(const nanovdb::Version& v) const {
     if (v.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
-      refuse(fmt::format("it is of version {}.{}.{}, versions {}.x are read", v.getMajor(), v.getMinor(), v.getPatch(),
+      reject(fmt::format("it is of version {}.{}.{}, versions {}.x are read", v.getMajor(), v.getMinor(), v.getPatch(),
                          NANOVDB_MAJOR_VERSION_NUMBER));
   }
   bool empty() const { return bytes_.empty(); }
@@ -72,7 +72,7 @@ class Bytes {
 
  private:
   std::string_view next(uint64_t size) const {
-    if (size > bytes_.size()) refuse("it is truncated");
+    if (size > bytes_.size()) reject("it is truncated");
     return bytes_.substr(0, size);
   }
 
@@ -93,9 +93,9 @@ class NodeCheck {
       reject_damaged();
     file_.check_version(grid.mVersion);
     if (grid.mGridType != nanovdb::GridType::Float)
-      file_.refuse("its grid does not hold 32-bit floats, which medium \"nanovdb\" takes");
+      file_.reject("its grid does not hold 32-bit floats, which medium \"nanovdb\" takes");
     if (grid.mGridClass != nanovdb::GridClass::FogVolume && grid.mGridClass != nanovdb::GridClass::Unknown)
-      file_.refuse("its grid is no fog volume");
+      file_.reject("its grid is no fog volume");
     check_map(grid.mMap);
     const auto& tree = *reinterpret_cast<const nanovdb::TreeData<3>*>(memory_ + sizeof(nanovdb::GridData));
     Level<Leaf> leaves = level<Leaf>(tree, 0);
@@ -127,9 +127,9 @@ class NodeCheck {
     }
   };
 
-  [[noreturn]] void reject_damaged() const { file_.refuse("it is damaged"); }
+  [[noreturn]] void reject_damaged() const { file_.reject("it is damaged"); }
   void check_finite(float v) const {
-    if (!std::isfinite(v)) file_.refuse("it holds a number that is not finite");
+    if (!std::isfinite(v)) file_.reject("it holds a number that is not finite");
   }
   void check_map(const nanovdb::Map& map) const {
     constexpr float kRounding = 1e-2f;
@@ -138,7 +138,7 @@ class NodeCheck {
       for (int column = 0; column < 3; ++column) {
         float sum = 0;
         for (int k = 0; k < 3; ++k) sum += map.mMatF[3 * row + k] * map.mInvMatF[3 * k + column];
-        if (!(std::abs(sum - float(row == column)) < kRounding)) file_.refuse("its transformation has no inverse");
+        if (!(std::abs(sum - float(row == column)) < kRounding)) file_.reject("its transformation has no inverse");
       }
   }
   /// Address at an offset from the tree; throws if `size` bytes do not fit there.
@@ -192,7 +192,7 @@ Memory allocate(uint64_t size, const Bytes& file) {
   try {
     return Memory(static_cast<std::byte*>(::operator new(size, kAlignment)));
   } catch (const std::bad_alloc&) {
-    file.refuse(fmt::format("there is no memory for its grid of {} bytes", size));
+    file.reject(fmt::format("there is no memory for its grid of {} bytes", size));
   }
 }
 
@@ -224,18 +224,18 @@ bool inflate_into(std::span<std::byte> to, std::string_view packed) {
 
 Memory unpack(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, const Bytes& file) {
   if (codec == nanovdb::io::Codec::BLOSC)
-    file.refuse("it is compressed by BLOSC; nanovdb_convert --zip writes one that can be read");
+    file.reject("it is compressed by BLOSC; nanovdb_convert --zip writes one that can be read");
   if (codec == nanovdb::io::Codec::NONE) {
-    if (packed.size() != size) file.refuse("it is damaged");
+    if (packed.size() != size) file.reject("it is damaged");
     Memory memory = allocate(size, file);
     std::memcpy(memory.get(), packed.data(), size);
     return memory;
   }
   constexpr uint64_t kMostRatio = 1040;  // deflate's is 1032
-  if (packed.size() < sizeof(uint64_t) || size / kMostRatio > packed.size()) file.refuse("it is damaged");
+  if (packed.size() < sizeof(uint64_t) || size / kMostRatio > packed.size()) file.reject("it is damaged");
   const std::string_view stream = packed.substr(sizeof(uint64_t));
   Memory memory = allocate(size, file);
-  if (!inflate_into({memory.get(), size}, stream)) file.refuse("it is damaged");
+  if (!inflate_into({memory.get(), size}, stream)) file.reject("it is damaged");
   return memory;
 }
 
@@ -249,7 +249,7 @@ class LoadedGrid final : public NanoVdbGrid {
     bounds_ = {vec3(box.min()), vec3(box.max())};
     for (int axis = 0; axis < 3; ++axis)
       if (!(bounds_.min[axis] < bounds_.max[axis] && bounds_.max[axis] - bounds_.min[axis] < INFINITY))
-        file.refuse("its grid is empty");
+        file.reject("its grid is empty");
   }
 
   float at(const Vec3& p) const override {
@@ -335,7 +335,7 @@ std::unique_ptr<NanoVdbGrid> load(nanovdb::io::Codec codec, std::string_view pac
 std::unique_ptr<NanoVdbGrid> read_raw(Bytes& file, std::string_view name) {
   while (!file.empty()) {
     const auto grid = file.next<nanovdb::GridData>();
-    if (grid.mMagic != kGridMagic || grid.mGridSize < sizeof grid) file.refuse("it is damaged");
+    if (grid.mMagic != kGridMagic || grid.mGridSize < sizeof grid) file.reject("it is damaged");
     const std::string_view bytes = file.take(grid.mGridSize), text(grid.mGridName, sizeof grid.mGridName);
     if (text.substr(0, text.find('\0')) == name) return load(nanovdb::io::Codec::NONE, bytes, grid.mGridSize, file);
   }
@@ -350,9 +350,9 @@ std::unique_ptr<NanoVdbGrid> NanoVdbGrid::read(std::string_view all, const std::
   if (!file.empty() && file.next<uint64_t>() == kGridMagic) return read_raw(file, name);
   while (!file.empty()) {
     const auto header = file.take<nanovdb::io::Header>();
-    if (header.magic != kOldMagic && header.magic != kFileMagic) file.refuse("it does not begin as one");
+    if (header.magic != kOldMagic && header.magic != kFileMagic) file.reject("it does not begin as one");
     file.check_version(header.version);
-    if (header.codec >= nanovdb::io::Codec::END) file.refuse("its compression is unknown");
+    if (header.codec >= nanovdb::io::Codec::END) file.reject("its compression is unknown");
     std::vector<std::pair<nanovdb::io::MetaData, std::string_view>> grids;
     for (int i = 0; i < header.gridCount; ++i) {
       const auto meta = file.take<nanovdb::io::MetaData>();

@@ -69,13 +69,13 @@ int64_t count_channels(std::string_view list, const EncodedImage& file) {
   int64_t channels = 0;
   auto channel = take_text(list);
   for (; channel && !channel->empty(); channel = take_text(list)) {
-    if (!is_utf8(*channel)) file.refuse("the name of a channel is not UTF-8");
+    if (!is_utf8(*channel)) file.reject("the name of a channel is not UTF-8");
     if (number_at<uint64_t>(list, kSampling) != kEachPixel)
-      file.refuse("channel \"{}\" has no value at each pixel: it is subsampled", excerpt(*channel, file.path));
+      file.reject("channel \"{}\" has no value at each pixel: it is subsampled", excerpt(*channel, file.path));
     list.remove_prefix(std::min(kAfterName, list.size()));
     ++channels;
   }
-  if (!channel || !list.empty()) file.refuse("its list of channels has another size than it states");
+  if (!channel || !list.empty()) file.reject("its list of channels has another size than it states");
   return channels;
 }
 
@@ -89,7 +89,7 @@ void read_attribute(std::string_view name, std::string_view type, std::string_vi
                             ? value.size() != kPreviewHeader + kPreviewPixel * number_at<uint32_t>(value, 0) *
                                                                    uint64_t(number_at<uint32_t>(value, 4))
                             : false;
-  if (is_wrong) file.refuse("an attribute of its header, of type {}, has {} bytes", type, value.size());
+  if (is_wrong) file.reject("an attribute of its header, of type {}, has {} bytes", type, value.size());
   const int64_t channels = type == "chlist" ? count_channels(value, file) : 0;
   if (name == "dataWindow") {  // four corners
     part.width = int64_t(number_at<int32_t>(value, 8)) - number_at<int32_t>(value, 0) + 1;
@@ -97,7 +97,7 @@ void read_attribute(std::string_view name, std::string_view type, std::string_vi
   } else if (name == "compression") {
     constexpr int kLast = 9;  // DWAB
     const int compression = static_cast<unsigned char>(value.empty() ? '\0' : value[0]);
-    if (compression > kLast) file.refuse("EXR compression {} is not supported; save it as ZIP", compression);
+    if (compression > kLast) file.reject("EXR compression {} is not supported; save it as ZIP", compression);
   } else if (name == "tiles") {
     part.tile_width = number_at<uint32_t>(value, 0);
     part.tile_height = number_at<uint32_t>(value, 4);
@@ -117,7 +117,7 @@ void check_part(const ExrPart& part, const EncodedImage& file) {
   const int64_t tiles = count(part.width, part.tile_width) * count(part.height, part.tile_height);
   constexpr int64_t kOffset = 8;  // bytes of the table for each tile
   if (tiles > int64_t(file.bytes.size()) / kOffset)
-    file.refuse("its {} bytes claim {} tiles", file.bytes.size(), tiles);
+    file.reject("its {} bytes claim {} tiles", file.bytes.size(), tiles);
 }
 
 /// OpenEXR File Layout: attributes of all parts.
@@ -142,7 +142,7 @@ void check_exr(const EncodedImage& file) {
     const auto size = number_at<int32_t>(rest, 0);
     rest.remove_prefix(sizeof size);
     if (size < 0 || size_t(size) > rest.size())
-      file.refuse("an attribute of its header claims {} bytes, {} follow", size, rest.size());
+      file.reject("an attribute of its header claims {} bytes, {} follow", size, rest.size());
     read_attribute(*name, *type, rest.substr(0, size_t(size)), part, file);
     rest.remove_prefix(size_t(size));
   }
@@ -159,19 +159,19 @@ void check_bmp(const EncodedImage& file) {
   const auto compression = is_old ? kUncompressed : number_at<uint32_t>(file.bytes, kHeader + 16);
   const auto colors = is_old ? 0 : number_at<uint32_t>(file.bytes, kHeader + 32);
   if (compression != kUncompressed && !(compression == kBitFields && (bits == 16 || bits == 32)))
-    file.refuse("compressed BMP is not supported; save it as PNG");
+    file.reject("compressed BMP is not supported; save it as PNG");
   if (bits > 8 || colors == 0 || colors == 1u << bits) return;
   const auto pixels = std::min<size_t>(number_at<uint32_t>(file.bytes, kPixels), file.bytes.size());
   const auto is_known = [colors](char index) { return static_cast<unsigned char>(index) < colors; };
   if (bits != 8 || !std::ranges::all_of(file.bytes.substr(pixels), is_known))
-    file.refuse("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
+    file.reject("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
 }
 
 /// Where the tag BitsPerSample is missing, OpenImageIO (2.4) takes 8 bits and libtiff 1, so that most of the pixels
 /// would be memory as it is.
 void check_tiff(const EncodedImage& file) {
   constexpr uint16_t kBitsPerSample = 258;
-  if (!tiff_number(file.bytes, kBitsPerSample)) file.refuse("its header has no BitsPerSample");
+  if (!tiff_number(file.bytes, kBitsPerSample)) file.reject("its header has no BitsPerSample");
 }
 
 /// OpenImageIO (2.4) looks colours up without regard to the size of the palette.
@@ -180,7 +180,7 @@ void check_tga(const EncodedImage& file) {
   constexpr uint8_t kIndices = 1, kCompressedIndices = 9;
   const auto type = number_at<uint8_t>(file.bytes, kType);
   if (type == kIndices || type == kCompressedIndices)
-    file.refuse("TGA with a palette is not supported; save it as PNG");
+    file.reject("TGA with a palette is not supported; save it as PNG");
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_
 void check_tiles(const EncodedImage& file, int64_t tile_width, int64_t tile_height, int64_t width, int64_t height) {
   constexpr int64_t kLargest = 1024;  // where the image is smaller
   if (tile_width > std::max(width, kLargest) || tile_height > std::max(height, kLargest))
-    file.refuse("its tiles of {} x {} pixels are larger than its {} x {} pixels", tile_width, tile_height, width,
+    file.reject("its tiles of {} x {} pixels are larger than its {} x {} pixels", tile_width, tile_height, width,
                 height);
 }
 

@@ -17,7 +17,7 @@ struct EncodedImage {
 
   /// Throws InputError: "cannot read image ...: " and the message.
   template <class... Args>
-  [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) const {
+  [[noreturn]] void reject(fmt::format_string<Args...> format, Args&&... args) const {
     fail(where, "cannot read image \"{}\": {}", path.string(), fmt::format(format, std::forward<Args>(args)...));
   }
 };

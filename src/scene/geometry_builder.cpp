@@ -16,25 +16,25 @@ namespace {
 
 /// Validates a mesh, because a plug-in's shape may return any data and Embree does not check it.
 void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Location& where) {
-  const auto refuse = [&](const std::string& what) { fail(where, "shape \"{}\" has a defect: {}", info.name, what); };
+  const auto reject = [&](const std::string& what) { fail(where, "shape \"{}\" has a defect: {}", info.name, what); };
   const auto* pointer = std::get_if<MeshPtr>(&geometry);
-  if (pointer ? !*pointer : !std::get<AnalyticShapePtr>(geometry)) refuse("make() returned nothing");
+  if (pointer ? !*pointer : !std::get<AnalyticShapePtr>(geometry)) reject("make() returned nothing");
   if (!pointer) return;
   const TriangleMesh& mesh = **pointer;
   const size_t vertices = mesh.p.size(), triangles = mesh.triangles.size();
   const auto fits = [](size_t size, size_t all) { return size == 0 || size == all; };
   if (!fits(mesh.n.size(), vertices) || !fits(mesh.uv.size(), vertices))
-    refuse(fmt::format("it has made a mesh of {} vertices with {} normals and {} texture coordinates", vertices,
+    reject(fmt::format("it has made a mesh of {} vertices with {} normals and {} texture coordinates", vertices,
                        mesh.n.size(), mesh.uv.size()));
   if (!fits(mesh.turned.size(), triangles))
-    refuse(fmt::format("it has made a mesh of {} triangles, and says of {} whether they are turned", triangles,
+    reject(fmt::format("it has made a mesh of {} triangles, and says of {} whether they are turned", triangles,
                        mesh.turned.size()));
   if (mesh.halves_from < triangles && (triangles - mesh.halves_from) % 2 != 0)
-    refuse(
+    reject(
         fmt::format("it has made a mesh of {} triangles, which from {} on are no pairs", triangles, mesh.halves_from));
   for (const auto& triangle : mesh.triangles)
     if (const uint32_t last = std::ranges::max(triangle); last >= vertices)
-      refuse(fmt::format("it has made a mesh of {} vertices with a triangle that names number {}", vertices, last));
+      reject(fmt::format("it has made a mesh of {} vertices with a triangle that names number {}", vertices, last));
 }
 
 /// Throws InputError for coordinates beyond kFarthest.
@@ -123,7 +123,7 @@ class GeometryBuilder {
     const ObjectDescription& object = description_.objects[index];
     if (visits_[index].is_open) fail(object.where, "object \"{}\" holds an instance of itself", object.name);
     if (!visits_[index].place) {
-      if (++open_ > InstanceRows::kMost + 1) refuse_nesting(object);  // one more if the outermost is not placed
+      if (++open_ > InstanceRows::kMost + 1) reject_nesting(object);  // one more if the outermost is not placed
       visits_[index].is_open = true;
       ObjectParts parts = parts_of(object.shapes, object.instances);
       parts.name = object.name;
@@ -141,12 +141,12 @@ class GeometryBuilder {
     for (const Instances& instances : parts.instances)
       for (const uint32_t place : instances.objects) {
         levels = std::max(levels, built_[place].levels + 1);
-        if (levels > InstanceRows::kMost) refuse_nesting(description_.objects[built_[place].index]);
+        if (levels > InstanceRows::kMost) reject_nesting(description_.objects[built_[place].index]);
       }
     return levels;
   }
 
-  [[noreturn]] static void refuse_nesting(const ObjectDescription& object) {
+  [[noreturn]] static void reject_nesting(const ObjectDescription& object) {
     fail(object.where, "instances of objects are nested more than {} deep in object \"{}\"", InstanceRows::kMost,
          object.name);
   }

@@ -86,7 +86,7 @@ class PbrtTranslator {
   bool translate(std::string_view directive, const PluginTable<Info>& ours, std::span<const StandIn> stand_ins,
                  std::span<const std::string_view> old, ParsedPlugin& plugin) {
     if (!ours.find(plugin.name) && std::ranges::find(old, plugin.name) != old.end()) {
-      refuse_old(directive, plugin);
+      reject_old(directive, plugin);
       plugin.name = ours.all().front()->name;
       plugin.params.clear();
       return false;
@@ -111,7 +111,7 @@ class PbrtTranslator {
   }
 
   /// Only the first plug-in of an older version is reported: the remedy is the same for all.
-  void refuse_old(std::string_view directive, const ParsedPlugin& plugin) {
+  void reject_old(std::string_view directive, const ParsedPlugin& plugin) {
     if (!old_.empty()) return;
     old_.attempt([&] {
       fail(plugin.where,
@@ -261,7 +261,7 @@ void translate_pbrt_plugins(SceneDescription& description, const Registry& regis
         return true;
       if (registry.shapes.find(s.plugin.name) || std::ranges::find(kOldShapes, s.plugin.name) == std::end(kOldShapes))
         return false;
-      translator.refuse_old("Shape", s.plugin);
+      translator.reject_old("Shape", s.plugin);
       return true;
     });
   };

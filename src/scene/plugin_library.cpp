@@ -52,15 +52,15 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
 void check_leaves(std::span<const MaterialInfo* const> infos, const fs::path& file, const Registry& registry) {
   for (const MaterialInfo* info : infos) {
     if (!info->leaf || info->leaf->is_open) continue;
-    const auto refuse = [&](const std::string& what) {
+    const auto reject = [&](const std::string& what) {
       fail({}, "plug-in \"{}\": the leaf model \"{}\" {}", file.string(), info->name, what);
     };
     if (!(info->leaf->cost > 0 && std::isfinite(info->leaf->cost)))
-      refuse(fmt::format("has a cost of {:g}: the CPU time of a path relative to a Lambertian leaf is needed",
+      reject(fmt::format("has a cost of {:g}: the CPU time of a path relative to a Lambertian leaf is needed",
                          info->leaf->cost));
     const MaterialInfo* reference = registry.materials.find(info->leaf->reference);
     if (!reference || !reference->leaf || reference->leaf->reference != reference->name)
-      refuse(fmt::format("names \"{}\" as its reference, which is none", info->leaf->reference));
+      reject(fmt::format("names \"{}\" as its reference, which is none", info->leaf->reference));
   }
 }
 

@@ -113,20 +113,20 @@ class AsciiSource {
   /// Moves to the next line that is not blank.
   bool start_row() {
     skip_empty_lines();
-    return find_word() || refuse("the file ends too early");
+    return find_word() || reject("the file ends too early");
   }
   /// A row must not have further values.
   bool end_row() {
-    if (find_word()) return refuse("the row has more values than the element has properties");
+    if (find_word()) return reject("the row has more values than the element has properties");
     if (at_ < bytes_.size()) ++at_, ++line_, line_start_ = at_;
     return true;
   }
   /// Reads a value. Returns false if there is none; `problem` returns the reason.
   bool next(PlyType, double& value) {
-    if (!find_word()) return refuse(at_ == bytes_.size() ? "the file ends too early" : "the row ends too early");
+    if (!find_word()) return reject(at_ == bytes_.size() ? "the file ends too early" : "the row ends too early");
     const auto number = parse_number(word_);
     if (!number)
-      return refuse(fmt::format("a number is needed, {} was given", excerpt(word_, std::filesystem::path(*file_))));
+      return reject(fmt::format("a number is needed, {} was given", excerpt(word_, std::filesystem::path(*file_))));
     value = *number;
     at_ += word_.size();
     return true;
@@ -143,7 +143,7 @@ class AsciiSource {
 
  private:
   /// Records the reason, and returns false.
-  bool refuse(std::string problem) {
+  bool reject(std::string problem) {
     problem_ = std::move(problem);
     return false;
   }

@@ -29,13 +29,13 @@ struct Source {
   /// The path in a message without quotation marks.
   std::string shown() const { return where.file && is_foreign(*where.file) ? excerpt(path, where) : path; }
   /// Throws InputError. `plain` is the complete message for a file without a description.
-  [[noreturn]] void refuse(std::string_view reason, std::string_view plain) const {
+  [[noreturn]] void reject(std::string_view reason, std::string_view plain) const {
     if (what.empty()) fail(where, "{}", plain);
     fail(where, "cannot read {} \"{}\": {}", what, path, reason);
   }
-  [[noreturn]] void refuse(std::string_view attempt, int error) const {
+  [[noreturn]] void reject(std::string_view attempt, int error) const {
     const char* reason = std::strerror(error);
-    refuse(reason, fmt::format("cannot {} {}: {}", attempt, shown(), reason));
+    reject(reason, fmt::format("cannot {} {}: {}", attempt, shown(), reason));
   }
 };
 
@@ -43,17 +43,17 @@ struct Source {
 void check_kind(const Source& source) {
   std::error_code error;
   const fs::file_type type = fs::status(source.path, error).type();
-  if (type == fs::file_type::not_found) source.refuse(std::strerror(ENOENT), "there is no file " + source.shown());
-  if (type == fs::file_type::none) source.refuse("open", error.value());
-  if (type == fs::file_type::directory) source.refuse("it is a folder", source.shown() + " is a folder, not a file");
+  if (type == fs::file_type::not_found) source.reject(std::strerror(ENOENT), "there is no file " + source.shown());
+  if (type == fs::file_type::none) source.reject("open", error.value());
+  if (type == fs::file_type::directory) source.reject("it is a folder", source.shown() + " is a folder, not a file");
   if (type != fs::file_type::regular && type != fs::file_type::fifo)
-    source.refuse("it is no regular file", source.shown() + " is not a regular file");
+    source.reject("it is no regular file", source.shown() + " is not a regular file");
 }
 
 File open(const Source& source) {
   check_kind(source);
   File file(std::fopen(source.path.c_str(), "rb"));
-  if (!file) source.refuse("open", errno);
+  if (!file) source.reject("open", errno);
   record_read(source.path, source.where);
   return file;
 }
@@ -64,7 +64,7 @@ void append_rest(std::FILE* file, const Source& source, std::string& bytes) {
     check_stop();
     bytes.append(block.data(), count);
   }
-  if (std::ferror(file)) source.refuse("read", errno);
+  if (std::ferror(file)) source.reject("read", errno);
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ uint64_t read_file_blocks(const fs::path& path, const Location& where,
     use({block.data(), count});
     all += count;
   }
-  if (std::ferror(file.get())) source.refuse("read", errno);
+  if (std::ferror(file.get())) source.reject("read", errno);
   return all;
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
+[[noreturn]] void reject(const fs::path& path, const std::string& reason) {
   fail({}, "cannot write \"{}\": {}", path.string(), reason);
 }
 
@@ -34,7 +34,7 @@ fs::path nearest_existing(const fs::path& folder) {
     found = above;
   }
   if (!fs::is_directory(found, error))
-    refuse(folder, fmt::format("\"{}\" is a file, a folder is needed", found.string()));
+    reject(folder, fmt::format("\"{}\" is a file, a folder is needed", found.string()));
   return found;
 }
 
@@ -54,13 +54,13 @@ NewFiles::NewFiles(fs::path folder, std::vector<fs::path> inputs)
     temporary_ = base / temporary_name();
     if (mkdir(temporary_.c_str(), 0777) != 0) {
       if (errno == EEXIST && attempt < 1000) continue;
-      refuse(folder_, std::strerror(errno));
+      reject(folder_, std::strerror(errno));
     }
     lock_ = open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 && errno != ENOENT) {
       const int reason = errno;
       rmdir(temporary_.c_str());
-      refuse(folder_, std::strerror(reason));
+      reject(folder_, std::strerror(reason));
     }
     if (lock_ >= 0 && !lock_new(lock_, temporary_)) close(std::exchange(lock_, -1));
   }
@@ -103,7 +103,7 @@ void NewFiles::check(const std::string& name) const {
   const fs::path target = folder_ / name;
   const fs::path above = nearest_existing(target.parent_path());
   if (fs::equivalent(above, target.parent_path(), error)) return check_replaceable(target);
-  if (access(above.c_str(), W_OK | X_OK) != 0) refuse(target, std::strerror(errno));
+  if (access(above.c_str(), W_OK | X_OK) != 0) reject(target, std::strerror(errno));
 }
 
 /// Creates a folder and those above it that are missing, and remembers them.
@@ -114,25 +114,25 @@ void NewFiles::make_folder(const fs::path& folder) {
   if (mkdir(folder.c_str(), 0777) == 0)
     made_.push_back(folder);
   else if (errno != EEXIST)
-    refuse(folder, std::strerror(errno));
+    reject(folder, std::strerror(errno));
 }
 
 /// The old file and the new one change their names at once, where the file system can do this.
 void NewFiles::move_into_place(const fs::path& from, const fs::path& target) {
   struct stat ignored {};
   if (lstat(target.c_str(), &ignored) != 0) {
-    if (rename(from.c_str(), target.c_str()) != 0) refuse(target, std::strerror(errno));
+    if (rename(from.c_str(), target.c_str()) != 0) reject(target, std::strerror(errno));
     placed_.push_back({target, ""});
     return;
   }
   fs::path old = from;  // where the exchange puts it
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
     old = temporary_ / temporary_name();
-    if (rename(target.c_str(), old.c_str()) != 0) refuse(target, std::strerror(errno));
+    if (rename(target.c_str(), old.c_str()) != 0) reject(target, std::strerror(errno));
     if (rename(from.c_str(), target.c_str()) != 0) {
       const int reason = errno;
       rename(old.c_str(), target.c_str());
-      refuse(target, std::strerror(reason));
+      reject(target, std::strerror(reason));
     }
   }
   placed_.push_back({target, old});
@@ -153,7 +153,7 @@ void NewFiles::finish() {
   try {
     if (!fs::exists(fs::symlink_status(folder_, error))) {
       if (folder_of(folder_) != folder_) make_folder(folder_of(folder_));
-      if (rename(temporary_.c_str(), folder_.c_str()) != 0) refuse(folder_, std::strerror(errno));
+      if (rename(temporary_.c_str(), folder_.c_str()) != 0) reject(folder_, std::strerror(errno));
       return;
     }
     for (const std::string& name : folders_) make_folder(folder_ / name);

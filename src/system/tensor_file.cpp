@@ -47,16 +47,16 @@ bool is_tensor_file(std::string_view bytes) { return bytes.starts_with(kMagic); 
 
 TensorFile::TensorFile(std::string bytes, std::string name, Location where)
     : bytes_(std::move(bytes)), name_(std::move(name)), where_(std::move(where)) {
-  if (!is_tensor_file(bytes_)) refuse("it is not a tensor file");
+  if (!is_tensor_file(bytes_)) reject("it is not a tensor file");
   Reader reader(std::string_view(bytes_).substr(kMagic.size()));
   std::array<uint8_t, 2> version{};
   uint32_t fields = 0;
   const auto need = [this](bool complete) {
-    if (!complete) refuse("it is truncated: the list of its fields is incomplete");
+    if (!complete) reject("it is truncated: the list of its fields is incomplete");
   };
   need(reader.take(version) && reader.take(fields));
   if (version[0] != 1 || version[1] != 0)
-    refuse(fmt::format("version {}.{} of the format; 1.0 is known", version[0], version[1]));
+    reject(fmt::format("version {}.{} of the format; 1.0 is known", version[0], version[1]));
   for (uint32_t i = 0; i < fields; ++i) {
     uint16_t length = 0, dimensions = 0;
     uint64_t offset = 0;
@@ -64,7 +64,7 @@ TensorFile::TensorFile(std::string bytes, std::string name, Location where)
     need(reader.take(length) && reader.take(length, field.name) && reader.take(dimensions) && reader.take(field.type) &&
          reader.take(offset));
     if (field.type == 0 || field.type >= kBytes.size())
-      refuse(fmt::format("field \"{}\" has the unknown type {}", excerpt(field.name, std::filesystem::path(name_)),
+      reject(fmt::format("field \"{}\" has the unknown type {}", excerpt(field.name, std::filesystem::path(name_)),
                          field.type));
     // No product of the shape exceeds the size of the file, so that it cannot overflow.
     const size_t most = offset <= bytes_.size() ? (bytes_.size() - offset) / kBytes[field.type] : 0;
@@ -78,7 +78,7 @@ TensorFile::TensorFile(std::string bytes, std::string name, Location where)
       field.shape.push_back(size);
     }
     if (!fits || field.count > most)
-      refuse(fmt::format("it is truncated: field \"{}\" ends after the {} bytes of the file",
+      reject(fmt::format("it is truncated: field \"{}\" ends after the {} bytes of the file",
                          excerpt(field.name, std::filesystem::path(name_)), bytes_.size()));
     field.bytes = std::string_view(bytes_).substr(offset, field.count * kBytes[field.type]);
     fields_.push_back(std::move(field));
@@ -92,11 +92,11 @@ const TensorFile::Field* TensorFile::find(std::string_view name) const {
 
 const TensorFile::Field& TensorFile::floats(std::string_view name, size_t dimensions) const {
   const Field* field = find(name);
-  if (!field) refuse(fmt::format("it has no field \"{}\"", name));
-  if (field->type != kFloat32) refuse(fmt::format("field \"{}\" needs 32-bit floats", name));
+  if (!field) reject(fmt::format("it has no field \"{}\"", name));
+  if (field->type != kFloat32) reject(fmt::format("field \"{}\" needs 32-bit floats", name));
   if (field->shape.size() != dimensions)
-    refuse(fmt::format("field \"{}\" has {} dimensions; {} are needed", name, field->shape.size(), dimensions));
-  if (field->count == 0) refuse(fmt::format("field \"{}\" is empty", name));
+    reject(fmt::format("field \"{}\" has {} dimensions; {} are needed", name, field->shape.size(), dimensions));
+  if (field->count == 0) reject(fmt::format("field \"{}\" is empty", name));
   return *field;
 }
 
@@ -105,7 +105,7 @@ std::vector<float> TensorFile::numbers(const Field& field, float least) const {
   std::memcpy(values.data(), field.bytes.data(), field.bytes.size());
   for (const float value : values)
     if (!std::isfinite(value) || value < least)
-      refuse(fmt::format(
+      reject(fmt::format(
           "field \"{}\" contains {}; {}", excerpt(field.name, std::filesystem::path(name_)), value,
           std::isfinite(value) ? fmt::format("numbers from {} are allowed", least) : "finite numbers are needed"));
   return values;
@@ -131,6 +131,6 @@ std::string tensor_file_of(std::span<const TensorFile::Field> fields) {
   return file + arrays;
 }
 
-void TensorFile::refuse(std::string_view why) const { fail(where_, "\"{}\": {}", name_, why); }
+void TensorFile::reject(std::string_view why) const { fail(where_, "\"{}\": {}", name_, why); }
 
 }  // namespace frond

@@ -42,7 +42,7 @@ class TensorFile {
   static constexpr float kAnyNumber = -3.4028235e38f;
   std::vector<float> numbers(const Field& field, float least = kAnyNumber) const;
   /// Throws InputError with the name of the file and what is wrong with it.
-  [[noreturn]] void refuse(std::string_view why) const;
+  [[noreturn]] void reject(std::string_view why) const;
 
  private:
   const Field* find(std::string_view name) const;

@@ -95,7 +95,7 @@ struct Scaling {
 };
 
 /// Throws InputError for a scale that overflows.
-[[noreturn]] void refuse_scale(const Params& p) {
+[[noreturn]] void reject_scale(const Params& p) {
   fail(p.where("scale"), "\"scale\" {} makes values of the image infinite", p.real("scale"));
 }
 
@@ -216,7 +216,7 @@ class ImageFloat final : public FloatTexture {
   /// Wrap mode black adds 0 to the range.
   void set_range(const Params& p) {
     range_ = scaling_(image_->values);
-    if (!std::isfinite(range_.min) || !std::isfinite(range_.max)) refuse_scale(p);
+    if (!std::isfinite(range_.min) || !std::isfinite(range_.max)) reject_scale(p);
     if (p.string("wrap") != "black") return;
     const double beyond = double(scaling_(0.f));
     range_ = {std::min(range_.min, beyond), std::max(range_.max, beyond)};
@@ -237,7 +237,7 @@ class ImageSpectrum final : public SpectrumTexture {
         image_(load_shared(p, placement.shared, "of colours", load_colors)),
         table_(ReflectanceTable::srgb()) {
     const Interval values = scaling_(image_->values);
-    if (!std::isfinite(values.min) || !std::isfinite(values.max)) refuse_scale(p);
+    if (!std::isfinite(values.min) || !std::isfinite(values.max)) reject_scale(p);
     if (values.min < 0 || values.max > 1)
       p.warn("filename", fmt::format("the image holds the value {:.3g}, reflectances are clamped to 0 to 1",
                                      values.min < 0 ? values.min : values.max));

@@ -180,7 +180,7 @@ std::optional<std::vector<double>> numbers_of(const JobParam& p, const std::stri
 /// Parses and checks the words of one parameter. Throws InputError.
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
-  const auto refuse = [&](const std::string& word) {
+  const auto reject = [&](const std::string& word) {
     fail({}, "{}: {} {} needed; \"{}\" was given{}", spelled(p.name), expected_text(p),
          p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word,
          p.kind == ArgumentKind::numbers ? range_hint(word, p.unit) : "");
@@ -191,20 +191,20 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
   if (takes > 0 && words.size() != takes)
     fail({}, "{} takes {} value{}, {} {} given: {}", spelled(p.name), takes, takes == 1 ? "" : "s", words.size(),
          words.size() == 1 ? "was" : "were", p.doc);
-  if (words.empty()) refuse("");
+  if (words.empty()) reject("");
   for (std::string& word : value.words) {
     if (word.find('\0') != std::string::npos) fail({}, "{}: a text without zero bytes is needed", spelled(p.name));
     if (word == "true" && !p.implied.empty()) word = p.implied;
-    if (!accepts(p, word)) refuse(word);
+    if (!accepts(p, word)) reject(word);
     if (p.path != PathUse::none) check_file_name(word, spelled(p.name));
     if (p.kind == ArgumentKind::seed) {
       const char* end = word.data() + word.size();
       const auto parsed = std::from_chars(word.data(), end, value.whole);
-      if (parsed.ec != std::errc() || parsed.ptr != end) refuse(word);
+      if (parsed.ec != std::errc() || parsed.ptr != end) reject(word);
     }
     if (!is_number_kind(p.kind)) continue;
     const auto numbers = numbers_of(p, word);
-    if (!numbers) refuse(word);
+    if (!numbers) reject(word);
     value.numbers.insert(value.numbers.end(), numbers->begin(), numbers->end());
   }
   return value;

@@ -217,7 +217,7 @@ class Reader {
     if (word.empty() || word == "nan" || word == "na" || word == "null" || word == "-") return {};
     const auto number = table_.number(text);
     constexpr double kLeast = -5, kMost = 150;  // range accepted: noise about 0, and percentages
-    if (!number || !(*number >= kLeast && *number <= kMost)) refuse_share(table_.where(field), what, text);
+    if (!number || !(*number >= kLeast && *number <= kMost)) reject_share(table_.where(field), what, text);
     return {number, std::string(text), table_.where(field)};
   }
 
@@ -229,7 +229,7 @@ class Reader {
          table_.fields()[field].text);
   }
 
-  [[noreturn]] static void refuse_share(const Location& where, std::string_view what, std::string_view given) {
+  [[noreturn]] static void reject_share(const Location& where, std::string_view what, std::string_view given) {
     fail(where, "{} is a share of the light, from 0 to 1 or in percent; \"{}\" was given", what, given);
   }
 

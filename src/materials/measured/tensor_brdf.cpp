@@ -25,16 +25,16 @@ float half_vector_jacobian(float u, float sine) { return std::max(2 * kPi * kPi 
 std::vector<float> ascending(const TensorFile& file, const Field& field) {
   std::vector<float> nodes = file.numbers(field);
   if (std::ranges::adjacent_find(nodes, std::greater_equal()) != nodes.end())
-    file.refuse(fmt::format("field \"{}\" does not ascend", field.name));
+    file.reject(fmt::format("field \"{}\" does not ascend", field.name));
   return nodes;
 }
 
 /// Checks that a field begins with these sizes and ends with a grid of at least 2 x 2.
 void check_shape(const TensorFile& file, const Field& field, std::initializer_list<size_t> first) {
   if (!std::ranges::equal(first, std::span(field.shape).first(first.size())))
-    file.refuse(fmt::format("the shape of field \"{}\" does not fit phi_i, theta_i and wavelengths", field.name));
+    file.reject(fmt::format("the shape of field \"{}\" does not fit phi_i, theta_i and wavelengths", field.name));
   if (field.shape[first.size()] < 2 || field.shape[first.size() + 1] < 2)
-    file.refuse(fmt::format("field \"{}\" needs a grid of 2 x 2 values or more", field.name));
+    file.reject(fmt::format("field \"{}\" needs a grid of 2 x 2 values or more", field.name));
 }
 
 template <class Stack>
@@ -95,7 +95,7 @@ class TensorBsdf final : public Bsdf {
 
 TensorBrdf::TensorBrdf(const TensorFile& file) {
   if (!file.has("spectra") && file.has("rgb"))
-    file.refuse("it has colours instead of spectra; use the file of the same material with spectra (_spec.bsdf)");
+    file.reject("it has colours instead of spectra; use the file of the same material with spectra (_spec.bsdf)");
   phi_ = ascending(file, file.floats("phi_i", 1));
   theta_ = ascending(file, file.floats("theta_i", 1));
   nm_ = ascending(file, file.floats("wavelengths", 1));
@@ -107,7 +107,7 @@ TensorBrdf::TensorBrdf(const TensorFile& file) {
   isotropic_ = phi_.size() <= 2;
   // Files of materials with symmetries have azimuths in a part of the circle.
   if (!isotropic_ && std::abs(phi_.back() - phi_.front() - 2 * kPi) > 0.01f)
-    file.refuse(
+    file.reject(
         fmt::format("its azimuths phi_i span {:.4g} degrees; 360 are needed, or at most two azimuths for an "
                     "isotropic material",
                     double(phi_.back() - phi_.front()) * 180 / double(kPi)));

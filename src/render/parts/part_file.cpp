@@ -71,12 +71,12 @@ constexpr std::string_view kMagic = "frond part 4\n", kEnd = "frond part end\n";
 // --- header
 
 /// Throws the exception that a reader reports as damage.
-[[noreturn]] void refuse(const Json& json, const char* why) { throw Json::other_error::create(501, why, &json); }
+[[noreturn]] void reject(const Json& json, const char* why) { throw Json::other_error::create(501, why, &json); }
 
 /// Returns an integer of at most `most`. A forged header can hold any number, and conversions do not check.
 template <class Integer>
 Integer integer_of(const Json& json, Integer most = std::numeric_limits<Integer>::max()) {
-  if (!json.is_number_unsigned() || json.get<uint64_t>() > uint64_t(most)) refuse(json, "no number that it can be");
+  if (!json.is_number_unsigned() || json.get<uint64_t>() > uint64_t(most)) reject(json, "no number that it can be");
   return static_cast<Integer>(json.get<uint64_t>());
 }
 
@@ -94,7 +94,7 @@ Crop crop_of(const Json& j) {
     const Json& value = j.at(i);
     if (!value.is_number_integer() || (value.is_number_unsigned() && value.get<uint64_t>() > uint64_t(kMostPixels)) ||
         value.get<int64_t>() < -kMostPixels)
-      refuse(value, "no position of a pixel");
+      reject(value, "no position of a pixel");
     return static_cast<int>(value.get<int64_t>());
   };
   return {bound(0), bound(1), bound(2), bound(3)};
@@ -137,17 +137,17 @@ std::optional<Splatting> splatting_of(const Json& j, const Crop& crop) {
     s.axes[i] = {integer_of<int>(axis.at("reach"), kMostReach), axis.at("mean").get<std::vector<double>>(),
                  axis.at("square").get<std::vector<double>>()};
     const auto width = size_t(2 * s.axes[i].reach + 1);
-    if (s.axes[i].mean.size() != width || s.axes[i].square.size() != width) refuse(j, "a filter of another width");
+    if (s.axes[i].mean.size() != width || s.axes[i].square.size() != width) reject(j, "a filter of another width");
     const auto is_weight = [](double weight) { return std::abs(weight) <= kMostWeight; };
     if (!std::ranges::all_of(s.axes[i].mean, is_weight) || !std::ranges::all_of(s.axes[i].square, is_weight))
-      refuse(j, "a filter whose weights are too large");
+      reject(j, "a filter whose weights are too large");
   }
   s.has_negative_weights = j.at("has_negative_weights"), s.correlated_pixels = j.at("correlated_pixels");
-  if (!(s.correlated_pixels >= 1 && s.correlated_pixels <= kMostWeight)) refuse(j, "no number of pixels");
+  if (!(s.correlated_pixels >= 1 && s.correlated_pixels <= kMostWeight)) reject(j, "no number of pixels");
   s.sampled = crop_of(j.at("sampled"));
   if (intersection(s.sampled, crop) != crop ||
       intersection(s.sampled, widened(crop, s.reach_x(), s.reach_y())) != s.sampled)
-    refuse(j, "samples of other pixels");
+    reject(j, "samples of other pixels");
   return s;
 }
 
@@ -180,12 +180,12 @@ FilmFormat film_format_of(const Json& j) {
   f.bands = integer_of(j.at("bands"), kMostBands),
   f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()), f.halves = j.at("halves");
   const Json& exponent = j.at("exponent");
-  if (!exponent.is_number_integer() || std::abs(exponent.get<double>()) > kMostExponent) refuse(exponent, "exponent");
+  if (!exponent.is_number_integer() || std::abs(exponent.get<double>()) > kMostExponent) reject(exponent, "exponent");
   f.exponent = exponent;
   f.color.row = j.at("color").get<std::array<Triple, 3>>(), f.white = j.at("white").get<Triple>();
   if (s.crop.x0 < 0 || s.crop.y0 < 0 || s.crop.x1 > s.width || s.crop.y1 > s.height || s.crop.width() <= 0 ||
       s.crop.height() <= 0)
-    refuse(j, "a film without pixels");
+    reject(j, "a film without pixels");
   f.splatting = splatting_of(j.at("splatting"), s.crop);
   return f;
 }

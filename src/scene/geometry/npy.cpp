@@ -18,7 +18,7 @@ struct Source {
   std::string_view name;
   const Location& where;
 
-  [[noreturn]] void refuse(std::string_view why) const { fail(where, "{}: {}", name, why); }
+  [[noreturn]] void reject(std::string_view why) const { fail(where, "{}: {}", name, why); }
 };
 
 /// Converts a Python literal of names, numbers, lists and tuples to JSON.
@@ -59,7 +59,7 @@ size_t size_of_type(const std::string& type) {
 /// numpy writes a shape of one dimension as a number or as a tuple. Dimensions are integers from 0.
 std::vector<size_t> shape_of(const Json& json, const Source& source) {
   const auto dimension = [&source](const Json& number) {
-    if (!number.is_number_unsigned()) source.refuse("a shape holds integers from 0");
+    if (!number.is_number_unsigned()) source.reject("a shape holds integers from 0");
     return number.get<size_t>();
   };
   if (!json.is_array()) return {dimension(json)};
@@ -80,19 +80,19 @@ NpyLayout layout_of(const Json& header, const Source& source) {
   NpyLayout layout;
   std::vector<size_t> shape = shape_of(header.at("shape"), source);
   if (header.at("fortran_order").get<bool>() && shape.size() > 1)
-    source.refuse("its columns stand one after another; numpy.ascontiguousarray puts its rows so");
-  if (shape.empty()) source.refuse("it holds a single value, not rows");
+    source.reject("its columns stand one after another; numpy.ascontiguousarray puts its rows so");
+  if (shape.empty()) source.reject("it holds a single value, not rows");
   layout.rows = shape[0];
   shape.erase(shape.begin());
   const Json& descr = header.at("descr");
   if (descr.is_string()) layout.fields.push_back({.name = "", .type = descr, .shape = shape});
-  if (descr.is_array() && !shape.empty()) source.refuse("it has rows of several records; one is needed in each");
+  if (descr.is_array() && !shape.empty()) source.reject("it has rows of several records; one is needed in each");
   if (descr.is_array())
     for (const Json& json : descr) layout.fields.push_back(field_of(json, source));
   for (NpyField& field : layout.fields) {
     field.offset = layout.row_bytes;
     layout.row_bytes += field.bytes();
-    if (layout.row_bytes > kMostRowBytes) source.refuse(fmt::format("its rows have more than {} bytes", kMostRowBytes));
+    if (layout.row_bytes > kMostRowBytes) source.reject(fmt::format("its rows have more than {} bytes", kMostRowBytes));
   }
   return layout;
 }
@@ -120,24 +120,24 @@ NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name
   const Source source{name, where};
   constexpr size_t kShort = 10, kLong = 12;
   if (file.size() < kLong || std::memcmp(file.data(), kMagic.data(), kMagic.size()) != 0)
-    source.refuse("it is no NumPy file: numpy.save writes them");
+    source.reject("it is no NumPy file: numpy.save writes them");
   const bool is_long = uint8_t(file[6]) > 1;
   const size_t start = is_long ? kLong : kShort;
   const size_t length = is_long ? number_at<uint32_t>(file, 8) : number_at<uint16_t>(file, 8);
-  if (length > file.size() - start) source.refuse("the file ends in its header");
+  if (length > file.size() - start) source.reject("the file ends in its header");
   NpyLayout layout;
   try {
     const Json header = Json::parse(to_json({reinterpret_cast<const char*>(file.data()) + start, length}));
     layout = layout_of(header, source);
   } catch (const Json::exception&) {
-    source.refuse("its header is not one that numpy.save writes");
+    source.reject("its header is not one that numpy.save writes");
   }
   layout.begin = start + length;
-  if (layout.row_bytes == 0 && layout.rows > 0) source.refuse("its rows are empty");
+  if (layout.row_bytes == 0 && layout.rows > 0) source.reject("its rows are empty");
   const size_t there =
       layout.row_bytes == 0 ? 0 : (std::max<uint64_t>(file_size, file.size()) - layout.begin) / layout.row_bytes;
   if (there < layout.rows)
-    source.refuse(fmt::format("the file is cut short: it says {} rows and has {}", layout.rows, there));
+    source.reject(fmt::format("the file is cut short: it says {} rows and has {}", layout.rows, there));
   return layout;
 }
 
