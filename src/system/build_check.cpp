@@ -23,7 +23,7 @@ std::string build_mismatch(const BuildRecord& record) {
     const std::string_view hash = entry.substr(std::min(entry.size(), path.size() + 1));
     const auto own = own_headers().find(path);
     if (own == own_headers().end())
-      others.insert(fmt::format("{}, which it has not", path));
+      others.insert(fmt::format("{}, which frond lacks", path));
     else if (own->second != hash)
       others.emplace(path);
   }

@@ -26,7 +26,7 @@ TEST(BuildCheck, ThoseThatDifferAreNamedOnce) {
   const std::string zero(1, '\0'), other = " 0123456789abcdef" + zero;
   EXPECT_EQ(
       problem_of(entry("core/light.h") + "core/math/vec.h" + other + "core/math/vec.h" + other + "core/gone.h" + other),
-      "was compiled from other headers than this frond (core/gone.h, which it has not; core/math/vec.h)");
+      "was compiled from other headers than this frond (core/gone.h, which frond lacks; core/math/vec.h)");
   std::string many;
   for (const char* header :
        {"core/bsdf.h", "core/light.h", "core/film.h", "core/math/ray.h", "core/shape.h", "core/math/vec.h"})
