@@ -25,8 +25,8 @@ struct FirstHit {
   SampledSpectrum albedo;
 };
 
-/// Plug-in that returned what cannot be: a value or density that is negative or not finite, a direction that is no unit
-/// vector. The radiance of the path is then not a number.
+/// Plug-in that returned an invalid result: a value or density that is negative or not finite, or a direction that is
+/// not a unit vector. The radiance of the path is then not a number.
 struct PlugInFault {
   enum class Kind : uint8_t { none, material, light };
   Kind kind = Kind::none;
@@ -95,8 +95,8 @@ class Integrator {
   virtual ~Integrator() = default;
   /// Called once, before the first path.
   virtual void prepare(const World&) {}
-  /// Called once, after `prepare`. What an integrator adapts may change its noise and speed alone. Returns what it
-  /// selected, as a line for the log; empty if there is nothing to say.
+  /// Called once, after `prepare`. An adaptation may change noise and speed, but not the expected image. Returns a line
+  /// for the log that states the selected settings; empty if there is none.
   virtual std::string adapt(const World&, const PilotRays&) { return {}; }
   /// Returns a tracer for one thread, not null. The world and the integrator outlive it. Thread-safe.
   virtual std::unique_ptr<Tracer> tracer(const World& world) const = 0;

@@ -8,8 +8,8 @@
 
 namespace frond {
 
-/// Returns the leaf models among these materials from the cheapest to the most expensive; those of equal cost in the
-/// given order. Open leaf materials are none.
+/// Returns the leaf models among these materials from the cheapest to the most expensive; models of equal cost keep the
+/// given order. Open leaf materials are not among them.
 inline std::vector<const MaterialInfo*> leaf_models(std::span<const MaterialInfo* const> materials) {
   std::vector<const MaterialInfo*> models;
   std::ranges::copy_if(materials, std::back_inserter(models),

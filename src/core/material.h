@@ -57,7 +57,7 @@ class Material {
   virtual void prepare(const Preparation&) {}
   /// Returns the BSDF at a hit, allocated in `arena`; it is valid until the arena is reset. With nullptr, as for pbrt's
   /// interface material, a ray continues without scattering; as in pbrt-v4, shadow rays of `path` are blocked, so that
-  /// only scattered rays light what lies behind, and those of `volpath` pass. Thread-safe.
+  /// only scattered rays light the surfaces behind, and shadow rays of `volpath` pass. Thread-safe.
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
   /// True if all BSDFs of the material are reciprocal, as class Bsdf defines it; the laws test this.
   virtual bool is_reciprocal() const { return false; }
@@ -68,8 +68,8 @@ class Material {
   virtual bool needs_details() const { return false; }
 };
 
-/// What a leaf material states about itself. The models of `leaf`, the selection, comparisons, swaps of all leaves and
-/// tables follow from these statements (scene/leaf_models.h).
+/// Statements of a leaf material about itself. The models of `leaf`, the selection, comparisons, swaps of all leaves
+/// and tables follow from these statements (scene/leaf_models.h).
 struct LeafModel {
   /// Table in a file that the material reads by its parameter kTableFile.
   enum class Table : uint8_t {

@@ -399,7 +399,7 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
       "texture \"{}\" has values from {:.3g} to {:.3g}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
       values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
   // With a unit, values out of range are most likely given in another unit: that is an error. Bounds that are not
-  // tight, such as those of noise, say nothing about the values.
+  // tight, such as the bounds of noise, do not indicate a wrong unit.
   if ((!declared.unit.empty() && texture->is_range_tight()) || values.max < range.min || values.min > range.max ||
       !(values.min <= values.max))
     fail(where, "{}", message);

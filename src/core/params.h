@@ -34,7 +34,7 @@ enum class ParamKind : uint8_t {
   illuminant,        ///< rgb, spectrum, blackbody: an emission
   albedo,            ///< rgb, spectrum: in [0, 1] at every wavelength
   unbounded,         ///< float, rgb, spectrum: at least 0 at every wavelength
-  rgb,               ///< rgb: colours, such as those of a grid
+  rgb,               ///< rgb: colours, such as a grid's
   float_texture,     ///< float, texture
   spectrum_texture,  ///< rgb, spectrum, texture: in [0, 1]
   material,          ///< string: the name of a material

@@ -112,7 +112,7 @@ using MadeShape = std::variant<std::vector<ShapeGeometry>, ObjectInstances>;
 
 /// Placement of a shape by its directive.
 struct ShapePlacement {
-  Transform to_scene;        ///< from the shape's space to that of the scene, or of the object that contains it
+  Transform to_scene;        ///< from the shape's space to the space of the scene, or of the object that contains it
   bool reverse_orientation;  ///< ReverseOrientation: front and back are exchanged
 };
 

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// Conditions on which check_stop throws: those of the scopes that a thread has entered.
+/// Conditions on which check_stop throws, set by the scopes that a thread has entered.
 struct StopState {
   const std::stop_token* token = nullptr;
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();

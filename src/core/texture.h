@@ -66,7 +66,8 @@ class FloatTexture {
   virtual float evaluate(const TexturePoint& at) const = 0;
   /// Bounds of the values.
   virtual Interval range() const = 0;
-  /// True if values come close to both bounds; false for bounds that are rarely approached, as those of noise.
+  /// True if values come close to both bounds; false for bounds that are rarely approached, such as the bounds of
+  /// noise.
   virtual bool is_range_tight() const { return true; }
   /// True if the texture itself reads more of a TexturePoint than `uv` and `instance`. Textures that it is made of
   /// report this separately.

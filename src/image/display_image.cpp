@@ -34,7 +34,8 @@ void balance(Image& image, std::string_view space, const WhiteChoice& choice,
     command->second += choice.is_auto ? " --white-balance auto" : fmt::format(" --white-balance {:.6g}", choice.kelvin);
 }
 
-/// Replaces what a display has no colour for: NaN and minus infinity by black, infinity by what every view shows white.
+/// Replaces values for which a display has no colour: NaN and minus infinity by black, infinity by what every view
+/// shows white.
 void make_finite(Image& image) {
   constexpr float kWhite = 1e6f;
   for (float& v : image.pixels)
@@ -43,7 +44,7 @@ void make_finite(Image& image) {
 
 }  // namespace
 
-/// The header's stops, and those of the command, repeat an automatic exposure exactly.
+/// The stops of the header and of the command repeat an automatic exposure exactly.
 AppliedExposure write_display_image(const std::string& path, const Image& image, std::string_view space,
                                     const ColorManager& colors, const DisplayChoice& choice,
                                     std::map<std::string, std::string> text) {

@@ -23,8 +23,7 @@ struct DisplayChoice {
 void check_display_choice(const std::string& path, const ColorManager& colors, const DisplayChoice& choice);
 
 /// Writes the first three channels of an image, which are linear in `space`, as PNG or JPEG encoded by a display
-/// transform. `text` are header attributes by name; that of the exposure is added. Throws
-/// InputError.
+/// transform. `text` are header attributes by name; the exposure's attribute is added. Throws InputError.
 AppliedExposure write_display_image(const std::string& path, const Image& image, std::string_view space,
                                     const ColorManager& colors, const DisplayChoice& choice,
                                     std::map<std::string, std::string> text);

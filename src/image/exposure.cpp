@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kMostStops = 64;
 
-/// Weights of the channels in the luminance; for a space that frond does not know, such as one of a configuration of
-/// OpenColorIO, those of sRGB.
+/// Weights of the channels in the luminance; sRGB's weights for a space that frond does not know, such as one of an
+/// OpenColorIO configuration.
 Triple luminance_weights(std::string_view space) {
   if (space == kXyzName) return {0, 1, 0};
   const ColorSpace* known = find_color_space(space);

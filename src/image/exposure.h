@@ -18,7 +18,7 @@ struct ExposureChoice {
 /// Parses "auto" or a number of stops from -64 to 64. Returns nullopt for other text.
 std::optional<ExposureChoice> parse_exposure(std::string_view text);
 
-/// What a light meter finds in an image.
+/// Result of a light meter for an image.
 struct ExposureMeter {
   /// Change of exposure, in steps of a third of a stop, that makes the geometric mean of the luminance 0.18, mid grey,
   /// of all pixels that are not black; less, if more than 2 % of these would be above 1. 0 for a black image.

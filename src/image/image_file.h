@@ -61,8 +61,8 @@ struct ImageFile {
   std::vector<std::string> left_out = {};        ///< messages about what else the file holds: warn of it
 };
 
-/// Reads an image file: EXR, PNG, JPEG, HDR, TIFF, PFM, BMP, WebP or TGA (image/image_signature.h). Values are those of
-/// the file, without conversion of colours; colours that a TIFF or TGA states to be multiplied by alpha are divided by
+/// Reads an image file: EXR, PNG, JPEG, HDR, TIFF, PFM, BMP, WebP or TGA (image/image_signature.h). Values are the
+/// file's, without conversion of colours; colours that a TIFF or TGA states to be multiplied by alpha are divided by
 /// it. Of several parts (EXR) or pages (TIFF) the first is read. Throws InputError at `where` if the file does not
 /// exist, has another format, is damaged or incomplete.
 ImageFile read_image(const std::filesystem::path& path, const Location& where);

@@ -24,7 +24,7 @@ std::string names_of(const std::vector<std::string>& channels, const std::filesy
   return fmt::format("{}{}", fmt::join(shown, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-/// Channels that a colour or a number is not read from, nor a variance of a render.
+/// Channels that are neither read as a colour or a number nor the variance of a render.
 std::vector<std::string> unused_channels(const Image& image) {
   std::vector<std::string> unused;
   for (const std::string& name : image.channels)

@@ -11,8 +11,8 @@ namespace frond {
 /// read, lacks one of the channels or contains values that are not finite.
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where);
 
-/// Reads the image of a parameter that names a file, and warns of what the file holds beside: other parts, and channels
-/// that are none of R, G, B, A and Y. Throws as the functions without a parameter do.
+/// Reads the image of a parameter that names a file, and warns of other content of the file: further parts, and
+/// channels other than R, G, B, A and Y. Throws as the functions without a parameter do.
 ImageFile read_rgb(const Params& p, std::string_view name);
 ImageFile read_finite(const Params& p, std::string_view name);
 

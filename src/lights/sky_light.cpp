@@ -142,8 +142,8 @@ class SkyLight final : public EnvironmentLight {
       }
     return sums;
   }
-  /// Returns the sun's share of samples: that of its light, averaged over the wavelengths, but leaves some for each.
-  /// The factors convert direct normal and diffuse irradiance to what is compared.
+  /// Returns the sun's share of samples: its share of the light, averaged over the wavelengths, within bounds that
+  /// leave samples for both sun and sky. The factors convert direct normal and diffuse irradiance to what is compared.
   static float sun_share(const SkyModel& model, double direct_factor, double diffuse_factor) {
     if (!(model.direct_total() > 0)) return 0;
     double share = 0;
@@ -186,7 +186,7 @@ class SkyLight final : public EnvironmentLight {
     if (!(local.z > 0)) return 0;
     return (1 - sampling.sun) * sampling.sky.pdf(local);
   }
-  /// On the disc, the sky's part, of the order of 1e-4, is that of its centre.
+  /// On the disc, the sky's part, of the order of 1e-4 of the radiance, is taken at the disc's centre.
   float sun_density(const Sampling& sampling) const {
     return sampling.sun * disc_.density() + sky_density(sampling, disc_.toward());
   }
@@ -222,8 +222,9 @@ class SkyLight final : public EnvironmentLight {
   bool has_sun_;
   float at_sun_;  ///< relative radiance of the sky at the centre of the sun
   Sampling by_irradiance_, by_excess_;
-  SkySpectra spectra_;                            ///< W m^-2 sr^-1 nm^-1; of the sky, where its relative radiance is 1
-  float ground_by_sky_ = 0, ground_by_disc_ = 0;  ///< the ground's radiance over that of sky and disc in spectra_
+  SkySpectra spectra_;  ///< W m^-2 sr^-1 nm^-1; of the sky, where its relative radiance is 1
+  float ground_by_sky_ = 0,
+        ground_by_disc_ = 0;  ///< the ground's radiance over the radiance of sky and disc in spectra_
   SpectrumPtr total_;
   double scalar_illuminance_ = 0;  ///< integral of the luminance over all directions
   std::string summary_;

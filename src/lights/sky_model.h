@@ -10,7 +10,7 @@
 
 namespace frond {
 
-/// What the parameters say: spectra, angular distribution and sun of a sky. z is up.
+/// Data of the parameters: spectra, angular distribution and sun of a sky. z is up.
 struct SkyModel {
   Vec3d toward_sun;   ///< unit, light space
   double sun_radius;  ///< angle, rad

@@ -56,8 +56,8 @@ class SkyTables {
 };
 
 /// Returns the all-weather sky of Perez, Seals and Michalsky (1993) for a zenith angle of the sun below 90 degrees. The
-/// irradiances are those of the whole spectrum: of the sun on a plane that faces it, and of the sky on a horizontal
-/// plane (above 0), W/m^2.
+/// irradiances are integrals over the whole spectrum: of the sun on a plane that faces it, and of the sky on a
+/// horizontal plane (above 0), W/m^2.
 ///
 /// Two limits are not in the paper. b is at most 0: above, the horizon's radiance would be infinite. The brightness is
 /// at least 0.2 if the clearness is from 1.065 to 2.8, as in Radiance's gendaylit: below, which occurs for a sun within

@@ -54,7 +54,7 @@ class AbmBsdf : public Bsdf {
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     const auto [wi, lobe, weight] = walk(wo, uc, u, rng);
-    // The weight is exact for any pdf > 0; `pdf` is that of MIS, as for LayeredBsdf.
+    // The weight is exact for any pdf > 0; `pdf` is the approximate density for MIS, as in LayeredBsdf.
     if (weight.is_black()) return {};
     const float density = pdf(wo, wi);
     return BsdfSample{weight * (density / std::abs(wi.z)), wi, density, lobe, true};
@@ -213,7 +213,7 @@ class Abm final : public Material {
     return arena.make<Tissue>(model_.at(double(lambda.nm[lane])));
   }
 
-  // Lobes at a point of the leaf: those of textured aspect ratios are built at each hit.
+  // Lobes at a point of the leaf; lobes of textured aspect ratios are built at each hit.
   const leaf::InterfaceLobes& lobes_at(const TexturePoint& at, Arena& arena) const {
     if (leaf_.aspects_are_constant()) return model_.lobes();
     leaf::LeafLobes lobes = model_.leaf_lobes();

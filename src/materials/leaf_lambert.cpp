@@ -39,10 +39,10 @@ struct Incidence {
   double theta_deg, weight;
 };
 
-/// Returns the angles in ascending order: `incidence`, or those of the mean under diffuse light. That of a share S,
-/// 2 int S(theta) cos theta sin theta dtheta, is that of 2 mu S(mu) over mu = cos theta in [0, 1]: S is smooth in mu up
-/// to grazing, so Gauss's rule converges fast; with eight points the tests hold the specimens to 2e-5, and leaves with
-/// any cuticle to 2e-4.
+/// Returns the angles in ascending order: `incidence`, or the nodes of the mean under diffuse light. The mean of a
+/// share S, 2 int S(theta) cos theta sin theta dtheta, is the integral of 2 mu S(mu) over mu = cos theta in [0, 1]: S
+/// is smooth in mu up to grazing, so Gauss's rule converges fast; with eight points the tests hold the specimens to
+/// 2e-5, and leaves with any cuticle to 2e-4.
 std::vector<Incidence> incidences(const Params& p) {
   if (!p.boolean("bihemispherical")) return {{p.real("incidence"), 1}};
   if (p.given("incidence"))

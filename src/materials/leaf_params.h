@@ -13,7 +13,7 @@
 namespace frond {
 
 /// Parameters of every leaf material, so that one can replace another in a scene. Parameters without a default are the
-/// specimen's. The numbers among them are those of leaf/tissue/leaf_numbers.h.
+/// specimen's. The numbers among them are the rows of leaf/tissue/leaf_numbers.h.
 const std::vector<Param>& leaf_params();
 
 /// Whether the parameter is of the tissue, which a table of its reflectance and transmittance replaces. The surface's
@@ -51,7 +51,7 @@ class LeafParams {
   Incident incident() const { return incident_; }
   /// Whether the scene requests the reciprocal BSDF.
   bool is_reciprocal() const { return incident_ == Incident::reciprocal; }
-  /// Range of the surface lobe's exponents: that of the cuticle's texture, or else `constant`.
+  /// Range of the surface lobe's exponents: the range of the cuticle's texture, or else `constant`.
   Interval exponents(double constant) const {
     return cuticle_aspect() ? cuticle_aspect()->range() : Interval{constant, constant};
   }

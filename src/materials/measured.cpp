@@ -21,8 +21,8 @@ std::unique_ptr<MeasuredData> read(const std::filesystem::path& path, const Loca
   return read_tensor_brdf(std::move(bytes), path.string(), where);
 }
 
-// Material "measured": a BSDF by measured values. Measurements are reciprocal within their errors only, so it is not
-// claimed.
+// Material "measured": a BSDF by measured values. Measurements are reciprocal within their errors only, so the material
+// does not claim reciprocity.
 class Measured final : public Material {
  public:
   explicit Measured(const Params& p) : where_(p.where("filename")), data_(read(p.file("filename"), where_)) {}

@@ -10,8 +10,8 @@
 namespace frond {
 
 /// Returns the wavelengths (nm) of a leaf's table for a render. If every path carries the same wavelengths: these, lane
-/// by lane. Else ascending ones to interpolate between: those of the strategy's list, or steps of 2.5 nm. With this
-/// step the error of a leaf's shares stays below 8e-4, at the red edge; its mean is 5e-5.
+/// by lane. Else ascending wavelengths to interpolate between: the strategy's list, or steps of 2.5 nm. With this step
+/// the error of a leaf's shares stays below 8e-4, at the red edge; its mean is 5e-5.
 std::vector<double> table_wavelengths(const WavelengthStrategy& strategy);
 
 /// Returns the wavelengths at which a render uses a table from a file with wavelengths `in_file_nm`: the render's, lane

@@ -302,7 +302,7 @@ class LoadedGrid final : public NanoVdbGrid {
                       (std::abs(m[6]) + std::abs(m[7]) + std::abs(m[8])) * reach};
     use(middle - extent, middle + extent, value);
   }
-  /// Indices follow from the way to a node, as in lookups; x is the slowest.
+  /// Indices follow from the path to a node, as in lookups; x is the slowest.
   template <class Node, class Use>
   void visit(const Node& node, const nanovdb::Coord& origin, const Use& use) const {
     constexpr int kSize = Node::DIM >> Node::LOG2DIM;

@@ -46,7 +46,7 @@ class SampledGrid {
           const auto share = [&](float dx) {
             return Vec3{(float(x) + dx) / float(n_[0]), (float(y) + dx) / float(n_[1]), (float(z) + dx) / float(n_[2])};
           };
-          // From the centre of the cell before to that of the cell after, and some rounding.
+          // From the centre of the previous cell to the centre of the next cell, with a margin for rounding.
           majorants.raise_bound(share(-0.5001f), share(1.5001f),
                                 density(values_[index(size_t(x), size_t(y), size_t(z))]));
         }

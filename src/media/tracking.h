@@ -19,11 +19,11 @@ inline SampledSpectrum transmittance(const SampledSpectrum& sigma, float d) {
   return t;
 }
 
-/// Delta tracking along a ray in a medium (Woodcock et al. 1965): at each tentative collision calls
-/// `collide(point, majorant, transmittance)`, where the transmittance is that of the majorants since the last call, and
-/// ends if it returns false. Returns true at the end of the ray; then `transmittance` is that since the last collision.
-/// `u` samples the first distance. A majorant far above the density makes any number of collisions: each one counts for
-/// `poll`.
+/// Delta tracking along a ray in a medium (Woodcock et al. 1965): at each tentative collision calls `collide(point,
+/// majorant, transmittance)` with the transmittance of the majorants since the last call, and ends if it returns false.
+/// Returns true at the end of the ray; `transmittance` is then the transmittance of the majorants since the last
+/// collision. `u` samples the first distance. A majorant far above the density makes any number of collisions: each one
+/// counts for `poll`.
 template <class Collide>
 bool track(const Medium& medium, const Ray& ray, const SampledWavelengths& lambda, int hero, float u, RandomStream& rng,
            StopPoll& poll, SampledSpectrum& transmittance, const Collide& collide) {

@@ -83,8 +83,8 @@ struct MeshLayout {
   }
 };
 
-/// Names what the body has beside the mesh. pbrt-v4's "face_indices" are for Ptex and silently ignored, as parameter
-/// "faceIndices" of a triangle mesh is.
+/// Names the content of the body other than the mesh. pbrt-v4's "face_indices" are for Ptex and silently ignored, as
+/// parameter "faceIndices" of a triangle mesh is.
 std::string unused_content(const PlyHeader& header, const MeshLayout& layout) {
   constexpr size_t kMostNamed = 8;
   std::vector<std::string> all;

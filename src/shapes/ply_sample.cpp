@@ -31,7 +31,7 @@ std::vector<Vec3d> points_of(Source source, const PlyElement& element) {
   return points;
 }
 
-/// Of a file whose vertices are not first.
+/// Sample of a file in which other elements precede the vertices.
 PlySample sample_whole(const std::filesystem::path& path) {
   const PlyMesh file = read_ply(path);
   PlySample sample{.points = {}, .vertices = file.mesh.p.size()};

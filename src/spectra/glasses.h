@@ -22,7 +22,7 @@ class GlassSpectrum final : public Spectrum {
   Sellmeier s_;
 };
 
-// Indices of refraction of SCHOTT's glasses. The coefficients are those of SCHOTT's data sheets, taken from
+// Indices of refraction of SCHOTT's glasses. The coefficients are from SCHOTT's data sheets, by way of
 // refractiveindex.info. They agree within 5e-4 with pbrt-v4's tables, which begin at 300 to 400 nm and end near 910 nm.
 SpectrumPtr glass_bk7();    ///< N-BK7
 SpectrumPtr glass_baf10();  ///< N-BAF10

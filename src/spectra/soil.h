@@ -32,7 +32,7 @@ class Soil {
   float max_reflectance() const { return max_; }
 
  private:
-  /// What BSM needs at one wavelength.
+  /// Optical constants of BSM at one wavelength.
   struct Optics {
     float dry;        ///< reflectance of the dry soil in air
     float submerged;  ///< reflectance of the dry soil in water

@@ -15,14 +15,13 @@
 namespace frond {
 namespace {
 
-/// The message does not quote the file: a scene could name any file here, and its content would go to whoever sees the
-/// log.
+/// The message does not quote the file: a scene could name any file here, and its content would appear in the log.
 double number_of(const TextTable& table, size_t field) {
   if (const auto value = table.number(table.fields()[field].text)) return *value;
   fail(table.where(field), "a spectrum file has a wavelength (nm) and a value in each line: this is not a number");
 }
 
-/// Reads numbers in turn, in lines of any length.
+/// Reads alternating wavelengths and values, in lines of any length.
 std::vector<SpectrumPoint> read_pairs(TextTable& table) {
   std::vector<SpectrumPoint> points;
   bool has_value = true, is_odd = true;
@@ -51,7 +50,7 @@ std::vector<SpectrumPoint> read_pairs(TextTable& table) {
   return points;
 }
 
-/// Names of columns for a message: so many, and so much of each.
+/// Names of columns for a message, limited in number and length.
 std::string listed(const TextTable& table, const std::vector<size_t>& columns) {
   constexpr size_t kMost = 16, kLength = 40;
   std::string text;

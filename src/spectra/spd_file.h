@@ -37,7 +37,7 @@ std::string spectrum_name(const std::filesystem::path& path);
 /// without, or a name that ends with .spd, .csv, .tsv or .txt. `path`: where the file would be.
 bool is_spectrum_file(std::string_view word, const std::filesystem::path& path);
 
-/// Returns the spectrum that a word names, or that of the file at `path` if it is a file. Throws InputError.
+/// Returns the spectrum that a word names; reads the file at `path` if the word is a file. Throws InputError.
 SpectrumPtr named_or_read_spectrum(std::string_view word, const std::filesystem::path& path, const Location& where);
 
 }  // namespace frond

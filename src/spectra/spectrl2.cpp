@@ -25,7 +25,7 @@ struct Air {
   double aerosol_depth, aerosol_scattering_albedo;  ///< vertical optical depth; single-scattering albedo
 };
 
-// Equation numbers are those of SERI/TR-215-2436. Where report and NREL's program differ, constants are the program's:
+// Equation numbers refer to SERI/TR-215-2436. Where report and NREL's program differ, constants are the program's:
 // 1.3366 in 2-4 (report: 1.335) and 118.3 in 2-11 (118.93).
 Transmittances transmittances(const Atmosphere& a, const Air& air, double relative_mass) {
   constexpr double kStandardPressure_Pa = 101300, kOzoneHeight = 22.0 / 6370;

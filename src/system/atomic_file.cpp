@@ -24,8 +24,7 @@ namespace fs = std::filesystem;
 /// Link of an open file in /proc, by which it gets a name.
 std::string link_of(int file) { return fmt::format("/proc/self/fd/{}", file); }
 
-/// Opens a file without a name, of which nothing is left if the process ends. Returns -1 where the file system has
-/// none.
+/// Opens a file without a name, which disappears if the process ends. Returns -1 where the file system has none.
 int open_nameless(const fs::path& folder) {
   const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   if (file >= 0 && access(link_of(file).c_str(), F_OK) == 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return file;
@@ -33,8 +32,8 @@ int open_nameless(const fs::path& folder) {
   return -1;
 }
 
-/// Whether the path is that of a device or an open stream, as /dev/stdout is: a file of this name would replace the one
-/// that the stream writes to.
+/// Whether the path names a device or an open stream, such as /dev/stdout: a file of this name would replace the
+/// stream's file.
 bool is_stream(const fs::path& path) {
   std::error_code error;
   const std::string folder = fs::canonical(folder_of(path), error).string();

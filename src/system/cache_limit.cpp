@@ -26,7 +26,7 @@ bool is_cache_file(const CacheKind& kind, std::string_view file) {
   return file.find_first_not_of("0123456789abcdef") == kHashDigits && file[kHashDigits] == '.';
 }
 
-/// Returns whether the name is that of a temporary file of replace_file, or of earlier versions.
+/// Returns whether a temporary file of replace_file, also of earlier versions, has this name.
 bool is_temporary(const CacheKind& kind, std::string_view file) {
   return file.ends_with(".tmp") && (file.starts_with(".frond-") || is_cache_file(kind, file));
 }

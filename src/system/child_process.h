@@ -17,10 +17,10 @@ struct ChildResult {
 /// nothing if there is no such program. Throws InputError if it cannot be run for any other reason.
 std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input);
 
-/// Runs a program of frond's own until it ends, or this process does, by whatever signal: its standard input is a pipe
-/// that nobody writes to, whose end the program has to watch. While it waits it looks at the stop: the program is then
-/// killed, and Stopped thrown. Returns nothing if there is no such program. Throws InputError if it cannot be run for
-/// any other reason.
+/// Runs one of frond's programs until it ends or this process ends, by any signal: the program's standard input is a
+/// pipe that nobody writes to, and the program must exit when the pipe is closed. If a stop is requested meanwhile,
+/// kills the program and throws Stopped. Returns nothing if there is no such program. Throws InputError if it cannot be
+/// run for any other reason.
 std::optional<ChildResult> run_dependent(const std::vector<std::string>& command);
 
 /// Runs a program, which is searched for in PATH, on this process's standard streams, and waits until it ends. As in
@@ -33,7 +33,7 @@ std::optional<int> run_attached(const std::vector<std::string>& command, const s
 /// Returns whether PATH has a program of this name.
 bool is_in_path(const std::string& program);
 
-/// Returns the end of a program for an error message: "exit code 1", "signal 9".
+/// Returns how a program ended, for an error message: "exit code 1", "signal 9".
 std::string exit_text(int status);
 
 }  // namespace frond

@@ -39,7 +39,7 @@ struct Uses {
 };
 
 std::mutex mutex;
-/// Of each job that runs: Python runs several at once.
+/// Uses by running job; Python runs several jobs at once.
 std::map<const FileUses*, Uses> jobs;
 thread_local FileUses* current = nullptr;
 
@@ -61,7 +61,7 @@ const std::string* replaced_input(const Uses& uses, const fs::path& output, cons
 
 }  // namespace
 
-/// An absolute path first: weakly_canonical leaves a relative path of which nothing exists as it is.
+/// The path is made absolute first, because weakly_canonical returns a relative path unchanged if no part of it exists.
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::exists(a, error) || fs::exists(b, error)) return fs::equivalent(a, b, error) && !error;

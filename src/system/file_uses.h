@@ -9,7 +9,7 @@
 /// Files that a job reads and writes: no output may be an input or another output.
 namespace frond {
 
-/// Whether both paths are of one file: the same device and inode, as hard and symbolic links are, or, of files that do
+/// Whether both paths name one file: the same device and inode, as hard and symbolic links have, or, for files that do
 /// not exist, the same name in the same folder.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
@@ -33,7 +33,7 @@ class FileUses {
 /// A file that the running job will write; without a FileUses it has no effect.
 class PlannedOutput {
  public:
-  /// `name` is that of the parameter, for messages. Throws InputError at `where` if the job has read the file or will
+  /// `name` is the parameter's name, for messages. Throws InputError at `where` if the job has read the file or will
   /// write it under another name. "-" is standard output.
   PlannedOutput(std::string name, std::string path, const Location& where = {});
   ~PlannedOutput();

@@ -106,7 +106,7 @@ void NewFiles::check(const std::string& name) const {
   if (access(above.c_str(), W_OK | X_OK) != 0) reject(target, std::strerror(errno));
 }
 
-/// Creates a folder and those above it that are missing, and remembers them.
+/// Creates a folder and those above it that are missing, and records them.
 void NewFiles::make_folder(const fs::path& folder) {
   std::error_code error;
   if (fs::is_directory(folder, error)) return;

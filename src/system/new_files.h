@@ -21,7 +21,8 @@ class NewFiles {
   NewFiles(const NewFiles&) = delete;
   NewFiles& operator=(const NewFiles&) = delete;
 
-  /// Throws InputError if the file `name` cannot have its place: a folder has its name, a file that of its folder.
+  /// Throws InputError if the file `name` cannot be created: a folder has this name, or a file has the name of its
+  /// folder.
   void check(const std::string& name) const;
   /// Returns the temporary path of the file `name`, relative to the folder, for writing before `finish`.
   std::filesystem::path file(const std::string& name);

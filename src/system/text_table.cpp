@@ -15,8 +15,8 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the index behind the double quotes that begin at `begin`, in which "" is one of them; if there are none, or
-/// if they are not closed, `begin`.
+/// Returns the index after the quoted text that begins at `begin`, in which "" stands for a quote; `begin` if there is
+/// none or it is not closed.
 size_t end_of_quotes(std::string_view line, size_t begin) {
   if (begin >= line.size() || line[begin] != '"') return begin;
   for (size_t quote = begin; (quote = line.find('"', quote + 1)) != line.npos; ++quote)
@@ -24,8 +24,8 @@ size_t end_of_quotes(std::string_view line, size_t begin) {
   return begin;
 }
 
-/// Returns the index of the first of some characters outside quotes, at `begin` or behind it; the line's end if there
-/// is none.
+/// Returns the index of the first wanted character outside quotes, at `begin` or after it; the line's end if there is
+/// none.
 template <class Test>
 size_t find_outside_quotes(std::string_view line, size_t begin, const Test& is_wanted) {
   for (size_t i = begin; i < line.size(); ++i) {

@@ -29,7 +29,7 @@ class Motion {
 
  private:
   static constexpr unsigned kMostParts = 32;
-  /// What is left of a map after translation and rotation, row by row.
+  /// Stretch: the part of a map without translation and rotation, by rows.
   using Stretch = std::array<Vec3, 3>;
 
   float share(float time) const;
@@ -38,10 +38,10 @@ class Motion {
 
   Interval seen_;
   std::array<Vec3, 2> translation_;
-  /// Unit quaternions, w last: that of the start, and the one at a right angle to it toward that of the end. The
-  /// rotation is their combination by the cosine and the sine of the share of angle_.
+  /// Unit quaternions, w last: the start's, and the one orthogonal to it in the plane of the start's and the end's. A
+  /// rotation is their sum, weighted by the cosine and the sine of a share of angle_.
   std::array<std::array<float, 4>, 2> rotation_{};
-  float angle_ = 0;  ///< between the quaternions of start and end, radians: half that of the rotation, at most pi/2
+  float angle_ = 0;  ///< between the quaternions of start and end, radians: half of the rotation's angle, at most pi/2
   std::array<Stretch, 2> stretch_{};
 };
 

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// What a number measures, where it is often given in another unit than the parameter's.
+/// Physical quantity of a number that is often given in another unit than the parameter's.
 enum class PhysicalQuantity : uint8_t {
   other,           ///< values in its range say nothing about their unit
   angle,           ///< degrees
@@ -26,9 +26,9 @@ enum class PhysicalQuantity : uint8_t {
   absorption,      ///< of a leaf's tissue, 1/m
 };
 
-/// Returns what a number is if it is not in the parameter's unit but in another that is in use, as "if it is in hPa,
-/// write 101325"; "" if nothing suggests that. 0 suggests nothing, and neither do whole degrees. Numbers outside the
-/// range are also tried as percent of a share and as micrometres instead of nm.
+/// Returns a hint if a number is probably in another common unit than the parameter's, such as "if it is in hPa, write
+/// 101325"; "" otherwise. There is no hint for 0 and for whole degrees. Numbers outside the range are also tried as
+/// percent of a share and as micrometres instead of nm.
 std::string unit_hint(double value, PhysicalQuantity quantity, std::string_view unit, const Interval& range);
 
 }  // namespace frond

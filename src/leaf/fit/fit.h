@@ -44,7 +44,7 @@ struct FitRequest {
   AbsorptionTables absorption_tables = AbsorptionTables::prospect;
   /// A parameter that is kept at a given value.
   struct Fixed {
-    /// Of a parameter that is no LeafAction::surface, or, per area, of an area content.
+    /// Name of a parameter that is not LeafAction::surface or, with `per_area`, of an area content.
     std::string name;
     double value;
     bool per_area = false;  ///< `value` is the content, kg/m^2 (leaf/tissue/area_content.h)
@@ -130,10 +130,10 @@ class FitCache {
 
 /// Returns the leaf whose solved walk fits the measurements best, by the method of Levenberg and Marquardt from several
 /// starts: least squares, except that outliers are weighted by their distance (Huber 1964). The search interpolates R
-/// and T (OpticsSurface); its end solves them at the measurements and repeats until that changes the fit no more.
-/// Standard errors are those of the linearised problem, widened for residuals that are correlated along the spectrum.
-/// Requires at least as many measurements as free parameters. Deterministic. `cache`, unless it is nullptr, saves a
-/// tenth of the time of many fits and does not change them.
+/// and T (OpticsSurface); its last steps solve them at the measurements, until the fit no longer changes. Standard
+/// errors follow from the linearised problem, widened for residuals that are correlated along the spectrum. Requires at
+/// least as many measurements as free parameters. Deterministic. `cache`, unless it is nullptr, saves a tenth of the
+/// time of many fits and does not change them.
 FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool, FitCache* cache = nullptr);
 
 }  // namespace frond::leaf

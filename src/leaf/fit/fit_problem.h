@@ -44,8 +44,8 @@ struct FitRows {
   /// Returns indices of rows, ascending by angle and then wavelength: all, or `most` of them and the last ones of each
   /// angle.
   std::vector<size_t> spread(size_t most) const;
-  /// Returns R and T of all rows: those of a surface plus its differences from `solved`, the values at the rows
-  /// `chosen` as by `spread`, linear in the wavelength between these. `amounts`: of the leaf.
+  /// Returns R and T of all rows: the surface's, plus their differences from `solved`, the values at the rows `chosen`
+  /// by `spread`. Between these rows the differences are linear in the wavelength. `amounts`: of the leaf.
   std::vector<OpticsSurface::Pair> filled(const std::vector<size_t>& chosen,
                                           const std::vector<OpticsSurface::Pair>& solved, const OpticsSurface& surface,
                                           const Constituents& amounts) const;
@@ -65,7 +65,7 @@ struct SurfaceExpansion {
   std::vector<OpticsSurface::Pair> corrections = {};
 };
 
-/// The residuals of some rows for the leaves of a space, followed by those of the prior.
+/// The residuals of some rows for the leaves of a space, followed by the prior's residuals.
 class FitProblem {
  public:
   /// All arguments must outlive the problem.

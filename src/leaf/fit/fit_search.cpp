@@ -141,7 +141,7 @@ std::vector<Candidate> first_candidates(const FitRequest& request, const FitRows
   return best;
 }
 
-/// Broyden's update: corrects the slopes by what a step has shown.
+/// Broyden's update: corrects the slopes by the result of a step.
 void broyden_update(const FitProblem& problem, const VectorXd& step, const OpticsSurface& found,
                     const OpticsSurface& expected, SurfaceExpansion& expansion) {
   double square = 0;
@@ -216,8 +216,8 @@ void polish(Candidate& c, const FitProblem& problem, Surfaces& surfaces) {
   }
 }
 
-/// Ends a search with R and T that are solved at the measurements: what they differ from the surface is added to it,
-/// until that changes the fit no more.
+/// Last steps of a search: solves R and T at the measurements and adds their difference from the surface to it, until
+/// the fit no longer changes.
 FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, Surfaces& surfaces,
                  const ThreadPool& pool) {
   constexpr int kRounds = 4;
@@ -239,7 +239,7 @@ FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, S
     if (!(cost < c.cost)) break;
     c.cost = cost, c.logs = logs, solved = std::move(there);
   }
-  // The slopes that the search has learnt serve it, but not the errors of the parameters.
+  // Slopes by Broyden's update are accurate enough for the search, but not for the errors of the parameters.
   c.expansion.slopes = surfaces.even_slopes(*c.space, c.logs);
   return {std::move(c.space), c.logs, std::move(solved), std::move(c.expansion)};
 }

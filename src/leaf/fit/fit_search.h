@@ -17,14 +17,14 @@ struct FoundLeaf {
   SurfaceExpansion expansion;               ///< about the leaf
 };
 
-/// Returns the leaf of least squares. `rows` are those of the request, `cache` as in fit_leaf.
+/// Returns the leaf of least squares. `rows`: of the request; `cache`: as in fit_leaf.
 FoundLeaf search_leaf(const FitRequest& request, const FitRows& rows, const ThreadPool& pool, FitCache& cache);
 
 /// Rows up to which each one is solved on its own.
 inline constexpr size_t kMostSolvedRows = 450;
 
-/// Returns R and T of a leaf at each row, by the solver of the walk. Of more than kMostSolvedRows rows, as of spectra
-/// in steps of 1 nm, as many are solved; between them, what these differ from an accurate OpticsSurface is
+/// Returns R and T of a leaf at each row, by the solver of the walk. If there are more than kMostSolvedRows rows, as in
+/// spectra in steps of 1 nm, only as many are solved; at the others their difference from an accurate OpticsSurface is
 /// interpolated.
 std::vector<OpticsSurface::Pair> solve_rows(const FitRows& rows, const TissueParams& params, const ThreadPool& pool);
 

@@ -13,8 +13,8 @@
 /// Parameters of a fit. Included by .cpp files of this folder alone, which keeps Eigen out of other modules.
 namespace frond::leaf {
 
-/// Amounts per leaf area of all that absorbs, and what one unit of each adds to the optical depth at one wavelength.
-/// The first is what every leaf has as much of (water), the others are the further `absorbers`.
+/// Amounts per leaf area of all absorbers, or the optical depth that one unit of each adds at one wavelength. The first
+/// is the absorption that all leaves have in common (water), the others are `absorbers`.
 using Constituents = Eigen::Array<double, Eigen::Dynamic, 1, 0, kMostLeafNumbers, 1>;
 
 inline Constituents amounts_of(const TissueParams& p) {
@@ -116,8 +116,7 @@ class LeafSpace {
     double ratio;
   };
 
-  /// Removes the constituents that leaves with other absorption tables have. The whole of a content takes the place of
-  /// its parts.
+  /// Removes the constituents of other absorption tables. A content as a whole replaces its parts.
   void take_tables() {
     const TissueParams& p = specimen_.params;
     for (const LeafNumber& n : leaf_parameters()) {
@@ -146,7 +145,8 @@ class LeafSpace {
       number.value(origin_) = found->value;
     return true;
   }
-  /// Sets what a content gives that is no parameter's: its parts, in the specimen's ratio; without any, the thickness.
+  /// Applies a content per area that is not a parameter: sets its parts in the specimen's ratio, or the thickness if it
+  /// has no parts.
   void fix_content(const FitRequest::Fixed& fixed) {
     const auto content = std::ranges::find(area_contents(), fixed.name, &AreaContent::name);
     const LeafNumber* same = find_leaf_number(fixed.name);

@@ -114,7 +114,7 @@ class Reader {
 
   bool has(Column column) const { return std::ranges::find(columns_, column) != columns_.end(); }
 
-  /// A share in a row, as it is written.
+  /// A share in a row, as the text states it.
   struct Given {
     std::optional<double> value = {};
     std::string text = {};
@@ -248,8 +248,8 @@ class Reader {
     return all > 0 && most <= 1 ? Unit::fraction : Unit::unknown;
   }
 
-  /// Decides for the columns whose names have no unit. If the values of one are in percent, those of the others are
-  /// too, unless they look like fractions: then the names of the columns must tell.
+  /// Decides for the columns whose names have no unit. If the values of one column are in percent, the values of the
+  /// others are too, unless they look like fractions: then the names of the columns must state the unit.
   void find_units() {
     const bool is_named = std::ranges::count(units_, Unit::unknown) < std::ptrdiff_t(kShares);
     for (size_t i = 0; i < kShares; ++i)

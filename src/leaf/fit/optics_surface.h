@@ -12,8 +12,8 @@ namespace frond::leaf {
 class LobeMeans;
 
 /// Reflectance and transmittance of a leaf of one structure as a function of wavelength and optical depth, through
-/// which alone the leaf's chemistry acts. The interpolation is within 3e-4 of the walk as it is solved with the same
-/// nodes (4e-3 where the cuticle's index is near the mesophyll's). Made for searches, whose end solves the walk anew.
+/// which alone the leaf's chemistry acts. The interpolation is within 3e-4 of the walk solved with the same nodes (4e-3
+/// where the cuticle's index is near the mesophyll's). For searches, whose last steps solve the walk itself.
 ///
 /// Surfaces of one kind of leaf are added like vectors: to first order a surface of another structure is this one plus
 /// the differences that the structure's numbers make.

@@ -97,8 +97,8 @@ struct Sources {
   Eigen::Index ways = 0;  ///< columns
 };
 
-/// How much of a ray that has just entered the leaf leaves it by each exit: rows are the ray's nodes in the epidermis,
-/// columns the exits of Sources.
+/// Shares of a ray that has just entered the leaf that leave it by each exit: rows are the ray's nodes in the
+/// epidermis, columns the exits of Sources.
 struct Prospects {
   Eigen::MatrixXd from_above, from_below;
 };

@@ -29,8 +29,8 @@ class DepthSolver {
     double reflectance;  ///< of the outer surface
     size_t entrance;     ///< index in entrances_
   };
-  /// How light that has just entered through one epidermis goes on: shares that reach the nodes of the mesophyll next
-  /// to it, and the share that leaves by the same side before.
+  /// Propagation of light that has just entered through one epidermis: shares that reach the nodes of the mesophyll
+  /// next to it, and the share that leaves by the same side before.
   struct Entrance {
     bool is_above;  ///< the adaxial one
     Eigen::RowVectorXd inward;
@@ -42,7 +42,7 @@ class DepthSolver {
   };
 
   /// Adds the outcomes of all entrances, times `weight`, for one position of the air space: `above` is the share of a
-  /// moving mesophyll above it. Such a leaf's outcomes are those of this position and of its mirror image together.
+  /// moving mesophyll above it. Such a leaf's outcomes are the sum over this position and its mirror image.
   void add(const Tissue& tissue, double above, double weight, std::vector<Outcome>& sums) const;
 
   Eigen::VectorXd mu_above_, mu_below_;  ///< cosines of the nodes in media 2 and 4

@@ -57,9 +57,9 @@ class Port {
   VectorXd kept_;
 };
 
-/// Cosines of the directions inside that refract into those of the given sines. The last node of a grid lies beyond the
-/// horizon, for interpolation below it; where the index is too low for a direction inside, the most grazing one is
-/// taken.
+/// Cosines of the inner directions that refract into the directions of the given sines. The last node of a grid lies
+/// beyond the horizon, for interpolation below it; where the index is too low for a direction inside, the most grazing
+/// one is taken.
 VectorXd inner_cosines(std::span<const double> sines, double n) {
   VectorXd mu(static_cast<Index>(sines.size()));
   for (Index i = 0; i < mu.size(); ++i) {
@@ -84,7 +84,7 @@ LeafModes::Grid to_row_major(const MatrixXd& matrix) {
   return grid;
 }
 
-/// Number of modes beyond which those of a lobe of this exponent are negligible.
+/// Number of significant modes of a lobe of this exponent.
 size_t most_modes(double exponent) { return static_cast<size_t>(16 + 3 * std::sqrt(exponent)); }
 
 }  // namespace

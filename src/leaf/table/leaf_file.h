@@ -15,11 +15,11 @@ struct LeafFile {
   /// Number of cells of the cosines at which `surface` is given: (k / kCosineCells)^2, k = 0 ... kCosineCells.
   static constexpr size_t kCosineCells = CosineNodes::kCells;
 
-  bool is_reciprocal = false;          ///< else f is that of incident "traced"
+  bool is_reciprocal = false;          ///< else f of incident "traced"
   size_t cells = 0;                    ///< of sines in [0, 1]: nodes go from -1 / cells to 1 + 1 / cells
   double exponent = 0;                 ///< of the surface's lobe
   std::vector<double> wavelengths_nm;  ///< ascending
-  std::vector<double> depths;          ///< optical, of the mesophyll, ascending; empty: that of each wavelength
+  std::vector<double> depths;          ///< optical, of the mesophyll, ascending; empty: one for each wavelength
   std::vector<float> index;            ///< of the cuticle, by wavelength
   /// Divisor of the surface's lobe, [row][cosine]. Reciprocal leaf: the I of F(i) / I(i) p F(o) / I(o), a row for each
   /// wavelength; else the share of the lobe that its cut at the plane leaves, in one row.

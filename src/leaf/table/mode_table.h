@@ -27,8 +27,7 @@ struct ModeTable {
   /// Estimated largest error of pi f by interpolation between the sines. At most the tolerance, unless that requires
   /// more than kMostCells cells.
   double error = 0;
-  /// The modes are those of f / ((1 - F_i) (1 - F_o)), which is symmetric in its directions
-  /// (leaf/table/reciprocal_modes.h).
+  /// The modes are of f / ((1 - F_i) (1 - F_o)), which is symmetric in its directions (leaf/table/reciprocal_modes.h).
   bool is_reciprocal = false;
 };
 

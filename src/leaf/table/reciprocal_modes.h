@@ -6,7 +6,7 @@
 
 namespace frond::leaf {
 
-/// Returns the reciprocal leaf closest to that of `spectrum`, for light that has been inside:
+/// Returns the reciprocal leaf closest to the leaf of `spectrum`, for light that has been inside:
 ///   f_r(i, o) = d(i) (f(i, o) + f(o, i)) / 2 d(o),
 /// where the positive d, one number for each direction outside and column, is such that every incident direction of the
 /// grid scatters as much light as before. This symmetric scaling of a positive kernel has one solution (Sinkhorn 1964),

@@ -32,8 +32,8 @@ double specific_absorption(const LeafNumber& number, AbsorptionTables tables, do
 double absorption_coefficient(const TissueParams& p, double lambda_nm) {
   const Constants published = constants_at(lambda_nm);
   const ProspectConstants prospect = prospect_constants_at(lambda_nm);
-  // Leaves of the published model keep the bits of their sum: its constituents are added first, and of each model's
-  // concentrations before coefficients.
+  // The order of the sum is fixed, so that leaves of the published model keep their results to the bit: the model's
+  // constituents come before others, and concentrations before coefficients.
   double sum = 0, others = 0;
   for (const bool is_mass : {true, false})
     for (const Absorber& a : absorbers()) {

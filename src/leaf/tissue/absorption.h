@@ -47,15 +47,15 @@ struct Absorber {
     return sum;
   }
 };
-/// All that absorbs, in the order of kLeafNumbers.
+/// All absorbers, in the order of kLeafNumbers.
 const std::vector<Absorber>& absorbers();
 
 /// Returns the absorption of 1 of a constituent's unit, m^2/kg for a concentration, at a wavelength within
 /// kConstantsRange_nm.
 double specific_absorption(const LeafNumber& number, AbsorptionTables tables, double lambda_nm);
 
-/// Returns the absorption coefficient of the mesophyll, 1/m: the sum over all that absorbs (kLeafNumbers,
-/// pigments) of concentration times specific absorption.
+/// Returns the absorption coefficient of the mesophyll, 1/m: the sum over all absorbers (kLeafNumbers, pigments) of
+/// concentration times specific absorption.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
 /// The same at every wavelength of kAbsorptionGrid.

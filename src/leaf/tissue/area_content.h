@@ -24,7 +24,7 @@ struct AreaUnit {
 inline constexpr AreaUnit kMicrogramsPerCm2{"ug/cm2", "_ug_cm2", 1e5, 40}, kMilligramsPerCm2{"mg/cm2", "_mg_cm2", 100},
     kGramsPerCm2{"g/cm2", "_g_cm2", 0.1, 0.012}, kProspectUnits{"", "_content", 1};  ///< the last: of brown pigments
 
-/// What a leaf contains per area: of one constituent, or of several together.
+/// Content of a leaf per area: one constituent, or several together.
 struct AreaContent {
   std::string_view name;  ///< in reports; empty: none
   AreaUnit unit;          ///< that the literature uses

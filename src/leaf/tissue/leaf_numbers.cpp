@@ -11,8 +11,8 @@
 namespace frond::leaf {
 namespace {
 
-/// What heads of tables state first. Keys of caches and heads of files depend on this text, so numbers that leaves got
-/// later follow in lines of their own, and only where they differ from the published leaf's.
+/// First lines of the heads of tables. Keys of caches and heads of files depend on this text: numbers that were
+/// introduced later follow in separate lines, and only if they differ from the published leaf's.
 constexpr std::string_view kHead =
     "# structure {structure}, thickness {thickness} m, mesophyll fraction {mesophyllfraction}\n"
     "# kg/m3: chlorophyll a {chlorophylla}, b {chlorophyllb}, carotenoids {carotenoids}, protein {protein}, cellulose "

@@ -68,7 +68,7 @@ struct LeafNumber {
   double value(const TissueParams& p) const { return is_parameter() ? value(const_cast<TissueParams&>(p)) : 1; }
 };
 
-/// All numbers of a leaf. The order is that of parameters, of the variables of fits and of their reports.
+/// All numbers of a leaf, in the order of parameters, variables of fits and reports.
 extern const std::span<const LeafNumber> kLeafNumbers;
 
 inline double& LeafNumber::value(TissueParams& p) const {

@@ -25,7 +25,7 @@ class Lobe {
   double density(double cos_alpha) const { return cos_alpha > 0 ? peak_ * power(cos_alpha) : 0; }
 
   /// Returns the share of the lobe on the axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1]: cosine of the axis
-  /// to the wall's normal. After the cut the density is density() / kept(). Fast for a TabulatedLobe only.
+  /// to the wall's normal. After the cut the density is density() / kept_share(). Fast for a TabulatedLobe only.
   double kept_share(double cos_axis) const { return table_ ? table_->at(cos_axis) : integrate_kept_share(cos_axis); }
 
   /// Quantiles of the directions after the cut; nullptr unless this is a CutLobe.

@@ -27,8 +27,8 @@ TissueParams leaf_of(TissueParams p, const std::string_view (&names)[n], const d
   return p;
 }
 
-/// Numbers of the published leaves; of those that `frond fit` found, and what it does not determine: the cuticle's
-/// shape is that of the published leaves.
+/// Numbers of the published leaves, and of leaves fitted by `frond fit`. A fit does not determine the cuticle's shape:
+/// fitted leaves have the published one.
 inline constexpr std::string_view kPublished[] = {
     "thickness", "mesophyllfraction", "chlorophylla",    "chlorophyllb", "carotenoids",   "protein", "cellulose",
     "lignin",    "cuticleaspect",     "epidermisaspect", "spongyaspect", "palisadeaspect"};

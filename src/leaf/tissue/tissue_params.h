@@ -13,7 +13,7 @@ enum class Structure : uint8_t {
   unifacial,  ///< one kind of mesophyll on both sides of an air space, whose depth varies from ray to ray
 };
 
-/// A pigment that green leaves lack, such as those of petals.
+/// A pigment that green leaves lack, such as a pigment of petals.
 struct Pigment {
   double concentration = 0;                 ///< in the mesophyll, kg/m^3
   std::vector<double> specific_absorption;  ///< m^2/kg, at kAbsorptionGrid

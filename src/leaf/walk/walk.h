@@ -54,7 +54,7 @@ struct SpectralWalkEnd {
 };
 
 /// One walk for 1 to kLanes wavelengths. `tissues` are of one leaf; `hero` is the index of one of them, drawn
-/// uniformly. Then the mean of each weight over any fate and directions equals that of walks at its own wavelength,
+/// uniformly. Then the mean of each weight over any fate and directions equals the mean of walks at its own wavelength,
 /// however the indices of refraction differ (hero wavelengths, Wilkie et al. 2014).
 SpectralWalkEnd walk(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, Absorption absorption,
                      const FirstEvent& first, RandomStream& rng);

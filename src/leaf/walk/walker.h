@@ -136,8 +136,8 @@ class Walker {
     return total_mirrors_ < 2;
   }
 
-  /// Call when the ray is out: replaces the density of the last direction drawn inside by that of the direction
-  /// outside, which is the one that all wavelengths share.
+  /// Call when the ray has left the leaf: replaces the density of the last direction drawn inside by the density of the
+  /// direction outside, which all wavelengths share.
   void leave() {
     if constexpr (K > 1) {
       const Vec3d wi = direction();

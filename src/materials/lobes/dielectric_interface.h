@@ -106,8 +106,8 @@ class DielectricInterface {
             area * facets_.g1_over_cosine(wo), fresnel_between(cosine, beyond, eta)};
   }
 
-  /// Jacobian of refraction: solid angle of facet normals over that of refracted directions (Walter et al. 2007);
-  /// cosines of both directions to the facet.
+  /// Jacobian of refraction: solid angle of facet normals over solid angle of refracted directions (Walter et al.
+  /// 2007); cosines of both directions to the facet.
   static float refraction_jacobian(float cosine, float beyond, float eta) {
     const float whole = cosine / eta - beyond;
     return beyond / (whole * whole);

@@ -170,7 +170,7 @@ class LayeredBsdf final : public Bsdf {
     DielectricInterface border;
     SampledSpectrum lanes;
   };
-  /// One coat for all lanes, or that of one lane.
+  /// One coat for all lanes, or the coat of one lane.
   Coat draw_coat(RandomStream& rng) const {
     if (!indices_.disperses()) return {{coat_, indices_.index(0)}, indices_.mask()};
     const int chosen = indices_.choose_lane(indices_.mask(), rng).i;

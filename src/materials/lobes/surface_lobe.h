@@ -28,8 +28,8 @@ inline Vec2 unit_circle(float u) {
 }
 
 /// Lobe of a leaf's surface about the mirror direction: a power of the cosine, cut off at the surface and normalised
-/// after the cut. The surface's share of the BSDF is F spread(wo, wi) normalisation(incident) / |cos theta|, with the
-/// cosine of the exitant direction.
+/// after the cut. The surface's share of the BSDF is F lobe_density(wo, wi) normalisation(incident) / |cos theta|, with
+/// the cosine of the exitant direction.
 class SurfaceLobe {
  public:
   /// `lobe` is not owned; nullptr only if no function is called.

@@ -16,7 +16,7 @@ struct DirectionAxes {
 };
 
 /// Spectra over a hemisphere, one function in each slice, interpolated bilinearly in polar angle and azimuth. All
-/// integrals are those of the interpolated functions, weighted by the cosine.
+/// integrals are of the interpolated functions, weighted by the cosine.
 class DirectionGrid {
  public:
   /// Cell of a direction.

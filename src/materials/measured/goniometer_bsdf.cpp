@@ -11,7 +11,7 @@ namespace {
 /// Angle from the nearer pole.
 float polar_angle(const Vec3& w) { return std::atan2(std::hypot(w.x, w.y), std::abs(w.z)); }
 
-/// Direction of the azimuth of wo; that of x at the pole.
+/// Unit vector along the azimuth of wo; the x axis at the pole.
 Vec2 azimuth(const Vec3& wo) {
   const float length = std::hypot(wo.x, wo.y);
   return length > 0 ? Vec2{wo.x / length, wo.y / length} : Vec2{1, 0};

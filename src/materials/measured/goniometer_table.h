@@ -13,8 +13,8 @@ namespace frond {
 /// Directions lie on rings of equal theta. Within a ring f is linear in phi, between rings linear in theta. From the
 /// first ring to the pole it changes to the ring's mean; beyond the last ring that ring is used. If all phi lie in [0,
 /// 180], the other half is their mirror image. Means over patches that cover a hemisphere are scaled, one factor for
-/// each incidence and wavelength, so that the integral is that of the patches. A side that was not lit scatters as the
-/// other one.
+/// each incidence and wavelength, so that the integral equals the sum over the patches. A side that was not lit
+/// scatters as the other one.
 class GoniometerTable final : public MeasuredData {
  public:
   /// Throws InputError for two values of one direction, for wavelengths that are missing at an incidence, and for

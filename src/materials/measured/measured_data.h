@@ -21,7 +21,7 @@ class MeasuredData {
   virtual void prepare(Interval /*range_nm*/) {}
   /// Returns the BSDF, allocated in `arena`.
   virtual const Bsdf* bsdf(const SampledWavelengths& lambda, Arena& arena) const = 0;
-  /// What was changed or assumed, for a warning; empty: nothing.
+  /// Warning about changed or assumed values; empty: none.
   virtual std::string warning() const { return {}; }
 };
 

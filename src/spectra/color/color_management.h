@@ -9,7 +9,7 @@
 
 namespace frond {
 
-/// Colour conversions by OpenColorIO. The spaces are those of the configuration, and in addition the linear spaces of
+/// Colour conversions by OpenColorIO. The spaces are the configuration's, and in addition the linear spaces of
 /// color_space.h and XYZ if the configuration defines ACES2065-1 (role aces_interchange, or a space of that name), by
 /// which the two are connected. Every function throws InputError for an unknown name, with a suggestion.
 class ColorManager {
@@ -34,7 +34,7 @@ class ColorManager {
   /// Throws InputError if the display or the view does not exist; the colour space is not checked.
   void check_names(std::string_view display, std::string_view view) const;
 
-  /// Names of all colour spaces: the configuration's, then those of color_space.h that it lacks.
+  /// Names of all colour spaces: the configuration's, then the spaces of color_space.h that it lacks.
   std::vector<std::string> spaces() const;
   /// Names of the configuration's displays.
   std::vector<std::string> displays() const;

@@ -49,8 +49,8 @@ const ColorSpace* find_color_space(std::string_view name);
 /// Returns the names for a scene's ColorSpace directive.
 std::vector<std::string_view> color_space_names();
 
-/// Returns the chromaticities that an image file in this space stores in its header; for kXyzName those of XYZ itself.
-/// nullptr for an unknown name.
+/// Returns the chromaticities that an image file in this space stores in its header; for kXyzName the chromaticities of
+/// XYZ itself. nullptr for an unknown name.
 const Chromaticities* chromaticities_of(std::string_view linear_name);
 
 /// Returns the matrix from RGB to XYZ that maps (1, 1, 1) to the space's own white at luminance 1 (SMPTE RP 177).

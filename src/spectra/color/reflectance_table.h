@@ -31,8 +31,8 @@ class ReflectanceTable {
   }
 
   Float4 luminance_{};  ///< luminance of r, g and b
-  /// Differences between the coefficients and those of the flat reflectance of the colour's luminance Y, times
-  /// sqrt(Y (1 - Y)). Unlike the coefficients, they are smooth and bounded at black and white.
+  /// Differences between the coefficients and the coefficients of the flat reflectance of the colour's luminance Y,
+  /// times sqrt(Y (1 - Y)). Unlike the coefficients, they are smooth and bounded at black and white.
   std::vector<Float4> nodes_;
 };
 

@@ -23,7 +23,7 @@ class SigmoidPolynomial {
   }
   /// Returns 1 minus this reflectance.
   SigmoidPolynomial complement() const { return of(-c2_, -c1_, -c0_); }
-  /// Value at a wavelength; that of the nearest end outside 360 to 830 nm.
+  /// Value at a wavelength; outside 360 to 830 nm, the value at the nearest end.
   float at(float lambda_nm) const {
     const float t = std::clamp((lambda_nm - 595) / 235, -1.f, 1.f);
     return sigmoid((c2_ * t + c1_) * t + c0_);

@@ -103,7 +103,7 @@ class Bands final : public WavelengthStrategy {
     find_range();
   }
 
-  /// Chooses the bands at random: a few samples may miss a band, unlike those of sample_for_index.
+  /// Chooses the bands at random: a few samples may miss a band, unlike samples by sample_for_index.
   SampledWavelengths sample(float u) const override {
     const double turn = double(u) * double(bands_.size());
     return sample_for_index(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));

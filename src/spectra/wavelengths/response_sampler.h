@@ -31,7 +31,7 @@ class ResponseSampler {
 };
 
 /// Returns the product of a response and a light's spectrum as points to interpolate between. The integral over any
-/// interval of 1 nm or more is within 1e-6 of that of the product, relative to the largest product. Empty if the
+/// interval of 1 nm or more is within 1e-6 of the product's integral, relative to the largest product. Empty if the
 /// product is 0 everywhere.
 std::vector<ResponsePoint> lit_response(std::span<const ResponsePoint> response, const Spectrum& light);
 

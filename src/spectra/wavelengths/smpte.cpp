@@ -21,8 +21,9 @@ constexpr Param kParams[] = {
 /// Luminance of red, green and blue: Baranoski and Rokne, eq. 4, as printed.
 constexpr std::array kLuminance{0.21222f, 0.7013f, 0.0865f};
 
-/// A channel is the radiance at one wavelength divided by that of the reference white, D65 of luminance 1, so that a
-/// white surface under D65 is white. The channels approximate linear SMPTE-C, to the accuracy of three wavelengths.
+/// A channel is the radiance at one wavelength divided by the radiance of the reference white, D65 of luminance 1, so
+/// that a white surface under D65 is white. The channels approximate linear SMPTE-C, to the accuracy of three
+/// wavelengths.
 class Smpte final : public WavelengthStrategy {
  public:
   explicit Smpte(const Params& p)

@@ -11,10 +11,11 @@ namespace frond {
 /// over them do not miss the lines of a lamp.
 std::vector<double> points_nm(const Spectrum& spectrum, Interval range_nm);
 
-/// Appends the points of a table that `spectrum` is or is made of.
+/// Appends the points of the tables that `spectrum` consists of.
 void append_points_nm(const Spectrum& spectrum, std::vector<double>& nm);
 
-/// Sorts and removes duplicates and what lies outside of the range; adds its ends and whole nanometres.
+/// Sorts the wavelengths, removes duplicates and wavelengths outside of the range, and adds its ends and whole
+/// nanometres.
 void complete_points_nm(Interval range_nm, std::vector<double>& nm);
 
 }  // namespace frond
