@@ -67,7 +67,7 @@ class Leaf {
   /// Optical depths of the mesophyll; empty: the leaf's own at each wavelength.
   const std::vector<float>& depths() const { return depths_; }
 
-  /// What a wavelength, and a depth, look at.
+  /// Interpolation in the table at one wavelength and depth.
   struct At {
     std::array<size_t, 4> column{};
     std::array<double, 4> weight{};
@@ -250,7 +250,7 @@ class Leaf {
     const double sine_i = sine(incident), sine_o = sine(leaving), sines = sine_i * sine_o;
     const double cos_phi =
         sines > 0 ? std::clamp(-(incident.x * leaving.x + incident.y * leaving.y) / sines, -1.0, 1.0) : 1;
-    // Of a reciprocal leaf the table is asked the same way round for both.
+    // Of a reciprocal leaf both orders of directions read the same entries of the table.
     const bool swaps = reciprocal_ && (crosses ? incident.z > 0 : sine_i < sine_o);
     const Nodes i = nodes(swaps ? sine_o : sine_i), o = nodes(swaps ? sine_i : sine_o);
     const bool below = (swaps ? leaving.z : incident.z) < 0;
@@ -273,7 +273,7 @@ class Leaf {
     return std::max(total, 0.0);
   }
 
-  /// What the surface's lobe is divided by.
+  /// Divisor of the surface's lobe.
   double divisor(const At& at, double cosine) const {
     const double x = std::sqrt(std::min(cosine, 1.0)) * double(kCosineCells);
     const size_t below = size_t(std::clamp(std::floor(x) - 1, 0.0, double(kCosineCells - 3)));

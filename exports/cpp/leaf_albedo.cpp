@@ -1,5 +1,5 @@
-// What a leaf gives back and lets through, by its file: leaf_albedo FILE LAMBDA_NM THETA_DEG [DEPTH]
-// With "-" for the angle it reads pairs of directions, six numbers a line, and prints f for each.
+// Reflectance and transmittance of a leaf file: leaf_albedo FILE LAMBDA_NM THETA_DEG [DEPTH] With "-" for the angle it
+// reads pairs of directions, six numbers a line, and prints f for each.
 #include <cstdio>
 #include <iostream>
 #include <random>

@@ -28,7 +28,7 @@
 namespace frond {
 namespace {
 
-/// Removes all readers but those of OBJ and glTF: a file could otherwise select any of some fifty.
+/// Removes all readers except for OBJ and glTF: a file could otherwise select any of some fifty.
 void keep_readers(Assimp::Importer& importer) {
   for (size_t i = importer.GetImporterCount(); i-- > 0;) {
     const std::string extensions = importer.GetImporterInfo(i)->mFileExtensions;
@@ -60,7 +60,7 @@ class Messages {
       std::string message = text;
       if (const size_t head = message.find(": "); head != message.npos) message.erase(0, head + 2);
       while (message.ends_with('\n')) message.pop_back();
-      // What it checks after reading changes nothing: vertices that no face has, sizes of coordinates.
+      // The library's checks after reading have no effect: unused vertices, sizes of coordinates.
       if (message.starts_with("Validation") || message.starts_with("ScenePreprocessor")) return;
       message = "the reader says: " + message.substr(0, kLongest);
       if (warnings_.size() < kMost && std::ranges::find(warnings_, message) == warnings_.end())

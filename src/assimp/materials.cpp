@@ -47,7 +47,7 @@ std::array<float, 6> to_image(const aiUVTransform& given) {
   return {c * sx, -s * sy, s * sy + x, s * sx, c * sy, 1 - c * sy - y};
 }
 
-/// Returns the first texture of a type. The wrap mode along u is that of both directions.
+/// Returns the first texture of a type. The wrap mode along u is used for both directions.
 ImportedTexture texture(const aiMaterial& m, aiTextureType type, const aiScene& scene,
                         std::vector<ImportedImage>& images) {
   using Wrap = ImportedTexture::Wrap;
@@ -65,7 +65,7 @@ ImportedTexture texture(const aiMaterial& m, aiTextureType type, const aiScene& 
   return t;
 }
 
-/// Whether the colour is that of glTF's KHR_materials_pbrSpecularGlossiness, which replaces the base colour.
+/// Whether the colour is from glTF's KHR_materials_pbrSpecularGlossiness, which replaces the base colour.
 bool is_specular_glossy(const aiMaterial& m) {
   float glossiness = 0;
   return m.Get(AI_MATKEY_GLOSSINESS_FACTOR, glossiness) == aiReturn_SUCCESS;
@@ -90,7 +90,7 @@ float opacity_of(const aiMaterial& m, bool is_gltf) {
   return std::clamp(opacity, 0.f, 1.f);
 }
 
-/// Only glTF has modes; elsewhere opacity is used as it is given.
+/// Only glTF has alpha modes; the opacity of other formats is used unchanged.
 ImportedMaterial::Alpha alpha_of(const aiMaterial& m) {
   using enum ImportedMaterial::Alpha;
   aiString mode;

@@ -83,7 +83,7 @@ class TextStream final : public Assimp::IOStream {
 
 }  // namespace
 
-/// No file of memory contents after a crash, and few open files.
+/// No core dump, and few open files.
 ProcessLimits::ProcessLimits() : memory_(kGigabyte), most_memory_(machine_memory()) {
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_NOFILE, 64);
@@ -180,7 +180,7 @@ bool ModelFiles::Exists(const char* name) const {
   return !permitted(name, &problem).empty();
 }
 
-/// Remembers a message. A hostile file may name any number of files, with names of any length.
+/// Stores a message. A hostile file may name any number of files, with names of any length.
 void ModelFiles::reject(const char* name, const std::string& problem) {
   constexpr size_t kLongest = 200, kMost = 20;  // of messages
   const std::string message = "\"" + std::string(name).substr(0, kLongest) + "\" is not read: " + problem;
@@ -192,7 +192,7 @@ void ModelFiles::reject(const char* name, const std::string& problem) {
 Assimp::IOStream* ModelFiles::Open(const char* name, const char* mode) {
   std::string problem;
   const fs::path path = permitted(name, &problem);
-  // The library's own idea, where a material file is missing, which has its message.
+  // Name that the library tries if a material file is missing, which has been reported already.
   const bool is_fallback = is_obj_ && name == fs::path(model_.filename()).replace_extension(".mtl");
   if (!problem.empty() && is_fallback && !refusals_.empty()) return nullptr;
   FILE* file = nullptr;

@@ -12,7 +12,7 @@
 
 namespace frond {
 
-/// Limits of this process, which reads untrusted files. Each file that is read raises those of memory and time in
+/// Limits of this process, which reads untrusted files. Each file that is read raises the limits of memory and time in
 /// proportion to its size. Memory: 1 GB and 128 times the files, at most the machine's; processor time: 60 s and 2 s
 /// for each MB; each file that is read: 4 GB; output: 4 times the memory. No file can be written.
 class ProcessLimits {
@@ -39,11 +39,11 @@ class ModelFiles final : public Assimp::IOSystem {
   /// Compares the model with what the import reads, before the library reads it. Throws std::runtime_error for what it
   /// would misread.
   void check();
-  /// What changes the look and is not read, when the library has read the files.
+  /// Content that changes the look and is not read. To be called after the library has read the files.
   std::vector<ImportedLoss> losses() const { return is_obj_ ? obj_.losses() : gltf_losses_; }
   /// Messages about files that were asked for and not opened.
   const std::vector<std::string>& refusals() const { return refusals_; }
-  /// What was subtracted from the vertices of an OBJ file: move_obj_to_origin.
+  /// Point that was subtracted from the vertices of an OBJ file (move_obj_to_origin).
   const std::array<double, 3>& origin() const { return origin_; }
 
  private:

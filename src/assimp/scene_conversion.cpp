@@ -39,8 +39,8 @@ ImportedMesh converted(const aiMesh& mesh, const ImportedTexture& texture) {
   return m;
 }
 
-/// Adds a node and those below it. The library's hierarchy is a tree; its depth is limited here, since the scene's
-/// nodes are a stranger's.
+/// Adds a node and those below it. The library's hierarchy is a tree; its depth is limited here, because the file is
+/// untrusted.
 void add_nodes(const aiNode& node, int32_t parent, int depth, const std::vector<int32_t>& mesh_of,
                std::vector<ImportedNode>& nodes) {
   constexpr int kDeepest = 10'000;

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Values of componentType, which are those of OpenGL.
+/// Values of componentType: OpenGL's constants.
 constexpr uint64_t kFloat = 5126, kByte = 5121, kShort = 5123, kInt = 5125;
 
 /// Returns the size of a component, bytes; 0 if the type is unknown.
@@ -59,7 +59,7 @@ class AccessorCheck {
 
   [[noreturn]] void fail(const std::string& problem) const { throw std::runtime_error(place_ + ": " + problem); }
 
-  /// Whether the library reads the values as they are meant: it copies bytes.
+  /// Whether the library reads the values correctly: it copies bytes without conversion.
   void check_type(const Json& accessor, uint64_t component, AccessorUse use) const {
     const std::string_view shape = text(accessor, "type");
     const bool is_index = use == AccessorUse::indices;

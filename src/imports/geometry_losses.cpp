@@ -8,8 +8,8 @@
 namespace frond {
 namespace {
 
-/// Whether the texture coordinates run the other way round than the vertices. The map's y axis is that of v in the
-/// model, and in frond the one that makes a right-handed frame.
+/// Whether the texture coordinates have the opposite orientation of the vertices. The normal map's y axis follows v in
+/// the model; in frond it completes a right-handed frame.
 bool is_mirrored(const ImportedMesh& mesh, const std::array<uint32_t, 3>& t) {
   const auto along = [&](size_t corner, size_t axis) {
     return double(mesh.uvs[t[corner]][axis]) - double(mesh.uvs[t[0]][axis]);

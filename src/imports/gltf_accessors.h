@@ -6,7 +6,7 @@
 // To be included after <nlohmann/json.hpp>, which no header of frond includes: it takes long to compile.
 namespace frond {
 
-/// What an accessor has to be for the reader library to read it right.
+/// Type that an accessor must have for the reader library to read it correctly.
 enum class AccessorUse : uint8_t { position, normal, texture_coordinates, indices };
 
 /// Returns the number of elements of an accessor. Throws std::runtime_error that begins with `place` if the library

@@ -71,7 +71,7 @@ class GltfCheck {
           " not read: " + names + " (extensionsRequired); export it without");
   }
 
-  /// Names the properties of an object that are not read. `material`: of which the object is a part; nullptr: of none.
+  /// Reports the properties of an object that are not read. `material`: to which the object belongs; nullptr: to none.
   void check_properties(std::string_view kind, const Json& object, const std::string* material = nullptr) {
     if (!object.is_object()) return;
     for (const auto& [key, value] : object.items()) {

@@ -11,7 +11,7 @@ namespace frond {
 /// not JSON, for an object that has a key twice (readers differ in which one counts), and for a depth above 200.
 nlohmann::json gltf_json(std::string_view file);
 
-// Access to what a stranger wrote: nothing is required of the types.
+// Access to untrusted JSON: values may have any type.
 
 /// Returns an object's member; nullptr if there is none, or `object` is no object.
 const nlohmann::json* member(const nlohmann::json& object, std::string_view key);

@@ -30,7 +30,7 @@ std::string_view json_chunk(std::string_view file) {
   return file.substr(kHeader + kChunkHeader, length);
 }
 
-/// Replaces bytes that are not UTF-8: names in files of careless exporters, on which nothing depends here.
+/// Replaces bytes that are not UTF-8, which some exporters write in names; nothing here depends on names.
 std::string as_utf8(std::string_view bytes) {
   std::string out(bytes);
   for (size_t i = 0; i < out.size();) {

@@ -87,7 +87,7 @@ constexpr GltfProperty kProperties[] = {
     {"texture", "sampler", read},
     {"texture", "name", inert},
     {"sampler", "wrapS", read},
-    {"sampler", "wrapT", read},  // named where it is not that of wrapS
+    {"sampler", "wrapT", read},  // reported if it differs from wrapS
     {"sampler", "magFilter", lost, "filter NEAREST of images (magFilter)", "9729"},
     {"sampler", "minFilter", inert},
     {"sampler", "name", inert},

@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// What the import does with a property of glTF 2.0.
+/// Treatment of a property of glTF 2.0 by the import.
 enum class GltfUse : uint8_t {
   read,     ///< it has its counterpart in the scene
   inert,    ///< it does not change the look: names, sizes, hints
@@ -24,7 +24,7 @@ struct GltfProperty {
   std::string_view no_effect = {};  ///< JSON of a value that changes nothing
 };
 
-/// The record of all properties: what is not in it is unknown, and named as such.
+/// The record of all properties. Properties that it lacks are reported as unknown.
 std::span<const GltfProperty> gltf_properties();
 /// Returns the property of a kind of objects; nullptr if it is unknown.
 const GltfProperty* gltf_property(std::string_view object, std::string_view name);

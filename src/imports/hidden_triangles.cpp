@@ -96,7 +96,8 @@ class SheetSearch {
     uint32_t second_child = 0;    ///< the first one follows its parent; 0: a leaf
   };
 
-  /// Half spaces that contain what the triangle may hide: those of `covers`, the distances behind it, and its box.
+  /// Half spaces that contain the centroids that the triangle may hide: by `covers`, by the distance behind it, and by
+  /// its box.
   struct Query {
     Query(const SheetTriangle& t, uint32_t its_sheet, double tolerance) : triangle(t), sheet(its_sheet) {
       const double longest = std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)});
@@ -217,8 +218,8 @@ class SheetSearch {
 
 }  // namespace
 
-/// Groups are visited in the order of their sheets. A group's members are those of several sheets: one is hidden by
-/// earlier sheets only, those that were visited before.
+/// Groups are visited in the order of their sheets. A group has members of several sheets: a member can be hidden by
+/// earlier sheets only, which have been visited before.
 std::optional<std::vector<double>> hidden_distances(const std::vector<SheetTriangle>& triangles, double tolerance) {
   std::vector<double> distances(triangles.size(), kNotHidden);
   Groups groups = grouped(triangles);

@@ -10,7 +10,7 @@
 namespace frond {
 namespace {
 
-/// What the import does with a statement.
+/// Treatment of a statement by the import.
 enum class Use : uint8_t {
   color,     ///< the colour
   opacity,   ///< d
@@ -73,7 +73,7 @@ constexpr MtlStatement kStatements[] = {
 /// Option of an image.
 struct MapOption {
   std::string_view name;
-  int most_words;              ///< that follow it; those of several are numbers
+  int most_words;              ///< that follow it; several words are numbers
   std::string_view no_effect;  ///< the value that changes nothing; "*": all
 };
 constexpr MapOption kOptions[] = {
@@ -136,7 +136,7 @@ class MtlReader {
     }
   }
 
-  /// `is_shape`: it is lost with any material in place of this one.
+  /// `is_shape`: any replacement of this material would lose it too.
   void record_loss(const std::string& what, bool is_shape = false) {
     if (used_.contains(name_)) losses_.add_for_material(name_, what, is_shape);
   }
@@ -145,7 +145,7 @@ class MtlReader {
     return std::ranges::all_of(words_, [value](std::string_view word) { return number_of(word) == value; });
   }
 
-  /// Models up to 2 are without and with gloss, which Ks says.
+  /// Illumination models up to 2 differ in gloss, which Ks states.
   void model() {
     const std::optional<double> value = words_.empty() ? std::nullopt : number_of(words_[0]);
     if (!value || *value > 2 || *value < 0)
@@ -180,7 +180,7 @@ class MtlReader {
     out_ += (is_clarity ? "Tr " : "d ") + std::string(words_[0]) + "\n";
   }
 
-  /// The file's name is what follows the options, with its blanks.
+  /// The file's name follows the options and may contain blanks.
   void map(const ObjStatement& s, const std::string& keyword) {
     std::string_view rest = s.rest;
     bool is_clamped = false;

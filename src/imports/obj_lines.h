@@ -20,7 +20,8 @@ struct ObjStatement {
 /// both. Comments and empty lines are left out.
 class ObjLines {
  public:
-  /// A line that ends with a backslash goes on in the next one if `is_continued`: not in MTL files, where paths end so.
+  /// A backslash at the end continues a line on the next one if `is_continued`: not in MTL files, whose paths may end
+  /// with one.
   ObjLines(std::string_view text, bool is_continued);
   /// Returns the next statement, whose text is valid until the next call; nothing at the end.
   std::optional<ObjStatement> next();

@@ -101,7 +101,7 @@ class ModelWriter {
       else
         other(*s);
     }
-    // The library reads a library where it stands, and gives its last material to what follows.
+    // The reader reads a material library at its statement, and assigns its last material to the faces that follow.
     constexpr size_t kLeastSize = 16;  // of a file, for the library
     std::string result = libraries_ + out_;
     result.resize(std::max(result.size(), kLeastSize), '\n');
@@ -141,7 +141,7 @@ class ModelWriter {
     ++seen_[kind];
   }
 
-  /// x y z, x y z w, or x y z and a colour, which white leaves as it is.
+  /// x y z, x y z w, or x y z and a colour; white has no effect.
   void vertex(const ObjStatement& s) {
     split_words(s.rest, words_);
     constexpr size_t kWithWeight = 4, kWithColor = 6, kWithAlpha = 7;
@@ -160,7 +160,7 @@ class ModelWriter {
     if (colors_ == 1) losses_.add("vertex colours"), ++colors_;
   }
 
-  /// Returns the index, from 1, that a word of a face names; 0 if it is none of the file's.
+  /// Returns the index, from 1, that a word of a face names; 0 if the file has no such element.
   uint64_t index(const ObjStatement& s, std::string_view word, Kind kind) const {
     if (word.starts_with('+')) word.remove_prefix(1);
     int64_t value = 0;
@@ -217,7 +217,7 @@ class ModelWriter {
     out_.append("\n");
   }
 
-  /// Returns where the first loss of a kind is, which all of the kind are named with.
+  /// Returns the place of the first loss of a kind, for the message about all losses of the kind.
   std::string first(size_t kind, const ObjStatement& s) {
     if (first_[kind] == 0) first_[kind] = s.line;
     return ", first in line " + std::to_string(first_[kind]);

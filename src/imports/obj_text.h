@@ -10,16 +10,16 @@
 
 namespace frond {
 
-/// An OBJ file and its material files as the reader library reads them right: with those statements only that it
-/// consumes, in a form that it does not misread. All other statements that change the look are losses.
+/// An OBJ file and its material files in a form that the reader library reads correctly: only the statements that it
+/// supports, in a syntax that it does not misread. All other statements that change the look are losses.
 class ObjText {
  public:
   /// Returns the text of the OBJ file. `is_usable(name)` says whether a material file can be read. Throws
-  /// std::runtime_error with the line for vertices and faces that are none.
+  /// std::runtime_error with the line for invalid vertices and faces.
   std::string model(std::string_view text, const std::function<bool(const std::string&)>& is_usable);
-  /// Returns the text of a material file, after that of the OBJ file.
+  /// Returns the text of a material file. To be called after `model`.
   std::string materials(std::string_view text);
-  /// Returns the losses when all files have been read; those of materials that the model uses.
+  /// Returns the losses, of materials that the model uses. To be called after all files have been read.
   std::vector<ImportedLoss> losses() const;
 
  private:

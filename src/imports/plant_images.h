@@ -23,14 +23,14 @@ struct PlantFile {
 /// Images of a model: decodes them, and makes the files that the scene names.
 class PlantImages {
  public:
-  /// `model` is the model file; `subfolder` that of the files to write. All references must outlive this object.
+  /// `model` is the model file; `subfolder` the folder of the files to write. All references must outlive this object.
   PlantImages(const std::vector<ImportedImage>& images, const std::filesystem::path& model, std::string subfolder,
               const Log& log)
       : images_(images), model_(model), subfolder_(std::move(subfolder)), log_(log) {}
 
   /// Returns an image's pixels, or nullptr with a warning if there is none that frond can read.
   const ImageFile* pixels(int32_t image);
-  /// Returns the path of the file with the image as it is in the model.
+  /// Returns the path of a file with the model's image unchanged.
   std::string original(int32_t image);
   /// Returns the path of a file with the colours times a factor per channel, 8 bits in sRGB, which is made once.
   std::string tinted_image(int32_t image, const std::array<float, 3>& factor, const std::string& name);

@@ -14,7 +14,7 @@ struct MappedParam {
   double at_black, at_white;
 };
 
-/// Material for those of a model whose name matches: `--leaf`.
+/// Replacement for the materials of a model whose name matches a pattern: `--leaf`.
 struct MaterialRule {
   std::string pattern;  ///< of the shell: * ? [a-z]
   ParsedPlugin material;

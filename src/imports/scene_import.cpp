@@ -71,7 +71,7 @@ class SceneWriter {
     return result;
   }
 
-  /// Places what follows, which is relative to a point, unless that is 0.
+  /// Begins a block of shapes with coordinates relative to `origin`, unless that is 0.
   void begin_at(const Vec3d& origin) {
     if (origin == Vec3d{}) return;
     text_ += fmt::format(

@@ -10,7 +10,7 @@
 
 namespace frond {
 
-/// What `frond import` does with a model.
+/// Options of `frond import`.
 struct ImportOptions {
   std::filesystem::path model, scene;  ///< file to read; scene file to write, or empty: nothing is written
   std::vector<MaterialRule> rules = {};
@@ -25,10 +25,10 @@ struct ImportedObject {
   size_t triangles, instances;
 };
 
-/// What was written, or would be.
+/// Content of the written scene, or of the scene that would be written.
 struct ImportSummary {
   std::vector<std::string> materials;  ///< names in the scene file
-  std::vector<size_t> triangles;       ///< by material; those of an object once
+  std::vector<size_t> triangles;       ///< by material; triangles of an object count once
   std::vector<std::string> types;      ///< by material: "leaf (by --leaf)", "diffuse"
   size_t instances = 0, objects = 0;
   std::vector<DoubleSheet> double_sheets;  ///< material: index in `materials`

@@ -7,11 +7,11 @@
 
 namespace frond {
 
-/// Returns the scene as bytes, for the process that asked for it.
+/// Returns the scene as bytes, for the parent process.
 std::string encode(const ImportedScene& scene);
 
 /// Parses the bytes of `encode`. Throws std::runtime_error unless they are complete and all indices are valid: the
-/// process that wrote them has read a file of a stranger.
+/// process that wrote them has read an untrusted file.
 ImportedScene decode(std::string_view bytes);
 
 }  // namespace frond

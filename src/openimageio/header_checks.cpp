@@ -28,7 +28,7 @@ std::optional<std::string_view> take_text(std::string_view& rest) {
   return text;
 }
 
-/// What the attributes of one part of an EXR claim; 0 where there is no attribute.
+/// Values that the attributes of one part of an EXR state; 0 for a missing attribute.
 struct ExrPart {
   int64_t width = 0, height = 0, channels = 0, tile_width = 0, tile_height = 0;
 };
@@ -168,7 +168,7 @@ void check_bmp(const EncodedImage& file) {
 }
 
 /// Where the tag BitsPerSample is missing, OpenImageIO (2.4) takes 8 bits and libtiff 1, so that most of the pixels
-/// would be memory as it is.
+/// would be uninitialised memory.
 void check_tiff(const EncodedImage& file) {
   constexpr uint16_t kBitsPerSample = 258;
   if (!tiff_number(file.bytes, kBitsPerSample)) file.reject("its header has no BitsPerSample");

@@ -9,7 +9,7 @@
 
 namespace frond {
 
-/// An image file in memory, and where the scene asks for it.
+/// An image file in memory, and the location in the scene that refers to it.
 struct EncodedImage {
   std::string_view bytes;
   const std::filesystem::path& path;

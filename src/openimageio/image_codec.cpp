@@ -47,7 +47,7 @@ std::optional<Chromaticities> read_chromaticities(const OIIO::ImageSpec& spec) {
   return Chromaticities{xy(0), xy(1), xy(2), xy(3)};
 }
 
-/// Returns the text attributes; those of other types, and text that is not UTF-8, are ignored.
+/// Returns the text attributes; attributes of other types, and text that is not UTF-8, are ignored.
 ImageHeader read_header(const OIIO::ImageSpec& spec) {
   ImageHeader header;
   header.color_space = spec.get_string_attribute(kColorSpaceKey);
@@ -78,9 +78,9 @@ bool is_whole_png(std::string_view bytes) {
   return false;
 }
 
-/// While one exists, memory that is allocated is filled with 0, as far as the C library can (glibc): decoders take
-/// memory as it is where a damaged file has too few data and they report no error, so that pixels could be different
-/// each time, and those of other data. Other threads' memory is filled too.
+/// While one exists, allocated memory is filled with 0, if the C library supports it (glibc). For a damaged file with
+/// too few data some decoders return uninitialised memory without an error: pixels would differ from run to run and
+/// could contain other data. The memory of other threads is filled too.
 class ZeroedMemory {
  public:
   ZeroedMemory() { count(1); }
@@ -147,7 +147,7 @@ class OpenImageIOCodec final : public ImageCodec {
     const ZeroedMemory zeroed;
     std::future<ImageFile> image;
     try {
-      // A thread of its own has no small blocks of memory that were freed before and keep their content.
+      // A new thread has no cache of small blocks of memory that were freed before and keep their content.
       image = std::async(std::launch::async, [&] { return decode_here(bytes, format, path, where); });
     } catch (const std::system_error&) {  // the machine has no more threads
       return decode_here(bytes, format, path, where);
@@ -178,7 +178,7 @@ class OpenImageIOCodec final : public ImageCodec {
   }
 
  private:
-  /// Calls the reader of one format, and passes its errors on with the name of the file and the place that asks for it.
+  /// Calls the reader of one format, and reports its errors with the file's name and the location that refers to it.
   /// Decodes from memory: nothing is opened by name, and a file that changes meanwhile does no harm.
   static ImageFile decode_here(std::string_view bytes, std::string_view format, const fs::path& path,
                                const Location& where) {

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-// What the records of leaf materials (MaterialInfo::leaf) say about those of a registry, also of shared objects.
+// Queries of the records of a registry's leaf materials (MaterialInfo::leaf), including plug-ins of shared objects.
 
 /// Returns the leaf models from the cheapest to the most expensive (core/leaf_models.h).
 std::vector<const MaterialInfo*> leaf_models(const Registry& registry);
@@ -16,7 +16,7 @@ std::vector<const MaterialInfo*> leaf_models(const Registry& registry);
 const MaterialInfo& open_leaf(const Registry& registry);
 /// Returns the first model in the registry that is its own reference.
 const MaterialInfo& reference_model(const Registry& registry);
-/// Whether the mean of the model's BSDF is that of reference_model.
+/// Whether the mean of the model's BSDF equals that of reference_model.
 bool is_exact(const MaterialInfo& model, const Registry& registry);
 /// Returns the cheapest exact model without noise.
 const MaterialInfo& noiseless_model(const Registry& registry);

@@ -27,7 +27,7 @@ void subtract(const Vec3d& origin, ParsedParam& points) {
   for (size_t i = 0; i < v.size(); ++i) v[i] -= origin[int(i % 3)];
 }
 
-/// Makes all points of a plug-in relative to `origin`, those that have their default too.
+/// Makes all points of a plug-in relative to `origin`, including points that have their default.
 void subtract(const Vec3d& origin, const PluginInfo* info, ParsedPlugin& plugin) {
   for (const Param& declared : info ? info->params : std::span<const Param>()) {
     const auto* value = std::get_if<std::array<double, 3>>(&declared.default_value);
@@ -47,7 +47,8 @@ SceneTransform moved(const SceneTransform& t, const Vec3d& origin) {
   return origin == Vec3d{} ? t : SceneTransform(PreciseTransform::translate(-origin) * t.precise);
 }
 
-/// Transform from a space whose origin moves. Its inverse has the camera's position, and is what is rounded.
+/// Transform from a space whose origin moves. Its inverse contains the camera's position and is the one that is
+/// rounded.
 SceneTransform moved_view(const SceneTransform& camera_from_world, const Vec3d& origin) {
   const PreciseTransform view = camera_from_world.precise * PreciseTransform::translate(origin);
   return {view.inverse().rounded().inverse(), view};
@@ -126,7 +127,8 @@ void move_instances(const Vec3d& origin, const std::vector<ObjectDescription>& o
 }
 
 /// A planar mapping takes its offset in double precision. The noise and the cubes of other textures have a period of
-/// 256 in each octave's space, so that whole periods are subtracted; a mapping around an axis has its place in space.
+/// 256 in each octave's space, so that whole periods are subtracted. A mapping around an axis is not periodic and keeps
+/// its position.
 void move_texture(const Vec3d& origin, TextureDescription& texture) {
   constexpr double kPeriod = 256;
   ParsedPlugin& plugin = texture.plugin;

@@ -12,7 +12,7 @@
 namespace frond {
 namespace {
 
-/// A position of a shape or an instance, how far it reaches from there, and its share in the decision.
+/// A position of a shape or an instance, its extent from there, and its weight in the choice of the origin.
 struct Anchor {
   Vec3d p;
   double extent = 0, weight = 1;
@@ -178,8 +178,8 @@ class OriginFinder {
     return p ? description_.resolve(text_of(params, name), p->value_where) : std::filesystem::path();
   }
 
-  /// A space has its origin where nearly all of its content is. What is very wide, as a ground, counts only if there is
-  /// nothing else.
+  /// A space has its origin where nearly all of its content is. Very wide content, such as a ground, counts only if
+  /// there is nothing else.
   static Space space_of(std::vector<Anchor>& anchors) {
     constexpr double kWide = 1000, kFewNear = 0.01;
     std::erase_if(anchors, [](const Anchor& a) { return !std::isfinite(a.weight * largest_coordinate(a.p)); });

@@ -33,7 +33,7 @@ constexpr StandIn kSamplers[] = {{"zsobol", "lattice", "", kRandomized}, {"padde
 constexpr std::string_view kPath[] = {"maxdepth", "lightsampler", "regularize"};
 constexpr std::string_view kSimplePath[] = {"maxdepth", "samplelights", "samplebsdf"};
 constexpr std::string_view kRandomWalk[] = {"maxdepth"};
-/// Integrators of pbrt-v4 that have the same expected image. In scenes with media volpath answers them.
+/// Integrators of pbrt-v4 that have the same expected image. In scenes with media volpath replaces them.
 constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"simplepath", "path", "", kSimplePath},
                                     {"randomwalk", "path", "", kRandomWalk},
@@ -44,7 +44,7 @@ constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"sppm", "path", "", {}},
                                     {"ambientocclusion", "path", "", {}},
                                     {"function", "path", "", {}}};
-/// Those that compute another image: the replacement is a warning.
+/// Integrators that compute another image: their replacement causes a warning.
 constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
 constexpr StandIn kMaterials[] = {{"hair", "diffuse", "materials", {}},
                                   {"subsurface", "coateddiffuse", "materials", {}},
@@ -234,7 +234,7 @@ void translate_pbrt_plugins(SceneDescription& description, const Registry& regis
     if (d.sampler.name == "stratified" && !registry.samplers.find("stratified")) count_strata(d.sampler);
   });
   translator.translate("Sampler", registry.samplers, kSamplers, kOldSamplers, d.sampler);
-  // Shadow rays of volpath pass through material "interface", those of path do not. volpath is pbrt's default.
+  // Shadow rays of volpath pass through material "interface", shadow rays of path do not. volpath is pbrt's default.
   const bool sees_through_interfaces =
       !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
   translate_integrator(registry, translator, log, d);

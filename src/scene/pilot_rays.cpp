@@ -9,10 +9,11 @@
 
 namespace frond {
 
-// The numbers are the sampler's, so that the samples of a pixel are as well distributed as those of the render. The
-// dimensions are those that the render loop would use. Without the filter: where pixels share samples, noise is that of
-// the samples inside a pixel. Each pixel has samples of its own, as small images have fewer pixels than the pilot asks
-// for. All bundles have the same of many bands: the difference between two is noise.
+// Sample values are the sampler's, in the dimensions of the render loop, so that the samples of a pixel are as well
+// distributed as in the render. There is no pixel filter: if pixels share samples, the noise is the noise of the
+// samples inside a pixel. Each pilot pixel has its own samples, because small images have fewer pixels than the pilot
+// requests. If there are more bands than lanes, all bundles carry the same bands: the difference between two bundles is
+// then noise alone.
 PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   constexpr uint32_t kSamples = PathBundle::kMost;
   const FilmSettings& film = scene_.film();
@@ -44,8 +45,8 @@ PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
   return bundle;
 }
 
-// As noise of XYZ would be that of brightness alone: the sampling of wavelengths keeps the sum of XYZ nearly free of
-// noise.
+// Linear sRGB in place of XYZ: the sampling of wavelengths keeps the sum of XYZ nearly free of noise, so that noise of
+// XYZ would be noise of the brightness alone.
 std::array<double, 3> ScenePilotRays::color(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const {
   const SensorResponse response = scene_.wavelengths().sensor(radiance, lambda);
   const std::string_view space = scene_.wavelengths().film_space();

@@ -48,7 +48,7 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
 
 }  // namespace
 
-/// Throws InputError for leaf models with statements that cannot be.
+/// Throws InputError for leaf models with invalid statements.
 void check_leaves(std::span<const MaterialInfo* const> infos, const fs::path& file, const Registry& registry) {
   for (const MaterialInfo* info : infos) {
     if (!info->leaf || info->leaf->is_open) continue;

@@ -203,7 +203,8 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
 
 /// Extends data that do not cover the render's wavelengths: with the scene's option "extendspectra" by their first and
 /// last values. Without, in an image of colours, within the visible range: by 0 as in pbrt-v4, or by their last value
-/// if 0 is invalid, as for an index of refraction. What is measured in bands would be wrong without data.
+/// if 0 is invalid, as for an index of refraction. Spectra of bands are not extended, because measured values would be
+/// wrong.
 SpectrumPtr SceneResolver::extended(SpectrumPtr s, const ParsedParam& p, SpectrumUse use) {
   const Interval data_nm = s->range_nm(), needed_nm = wavelengths_.range_nm();
   const auto reaches = [needed_nm](Interval nm) { return nm.contains(needed_nm.min) && nm.contains(needed_nm.max); };

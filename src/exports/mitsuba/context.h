@@ -12,9 +12,9 @@
 
 namespace frond::mitsuba {
 
-/// What the writers of an export's parts share. They report what Mitsuba has no equivalent of by `report_unsupported`,
-/// and go on with what stands for it, so that one run finds all of it; InputErrors of single materials, shapes and
-/// lights are collected in `problems`.
+/// State that the writers of an export's parts share. They report features without an equivalent in Mitsuba by
+/// `report_unsupported`, and continue with a substitute, so that one run finds all of them; InputErrors of single
+/// materials, shapes and lights are collected in `problems`.
 struct Context {
   const SceneDescription& description;
   const Registry& registry;
@@ -36,8 +36,8 @@ struct Context {
   void warn(const Location& where, const std::string& message) {
     if (said.insert(where.text() + message).second) log.warn(where, message);
   }
-  /// Reports what Mitsuba has no equivalent of: a warning if --ignore-unsupported lists its kind, otherwise an error.
-  /// `instead` says what is exported in its place, and what is lost. Returns whether it is a warning.
+  /// Reports a feature without an equivalent in Mitsuba: a warning if --ignore-unsupported lists its kind, otherwise an
+  /// error. `instead` states what is exported in its place, and what is lost. Returns whether it is a warning.
   bool report_unsupported(std::string_view kind, const Location& where, const std::string& what,
                           std::string_view instead) {
     const bool passes = unsupported.is_ignored(kind);

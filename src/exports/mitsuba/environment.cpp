@@ -29,7 +29,7 @@ Sun sun_of(const Context& context, const Surroundings& sky) {
   return {*sky.light->sun(), 1.05 * model.sun_radius, kPiD * sine * sine / model.horizon_factor()};
 }
 
-/// Returns the direction; one on the sun's disc becomes the nearest beside it.
+/// Returns the direction; a direction on the sun's disc is moved to the nearest one outside of the disc.
 Vec3 move_off_disc(const Sun& sun, const Vec3& d) {
   if (length(d - sun.toward) >= float(2 * std::sin(sun.radius / 2))) return d;
   const Frame frame = Frame::around(sun.toward);
@@ -50,7 +50,7 @@ class Radiance {
   SampledSpectrum at(const Vec3& d, const SampledWavelengths& lambda) const {
     return light_.radiance({}, sun_ ? move_off_disc(*sun_, d) : d, lambda);
   }
-  /// Irradiance of the disc at normal incidence: its radiance above that of the sky beside it.
+  /// Irradiance of the disc at normal incidence: its radiance minus the radiance of the sky beside it.
   SampledSpectrum sun_irradiance(const SampledWavelengths& lambda) const {
     const SampledSpectrum disc = light_.radiance({}, sun_->toward, lambda), sky = at(sun_->toward, lambda);
     return (disc + sky * -1) * float(sun_->projected);
@@ -84,7 +84,8 @@ class ColorOf {
   std::array<std::vector<double>, 3> weights_;
 };
 
-/// Axes of the image in the world: y, which Mitsuba takes as up, is the sky's zenith; without a sky those of the world.
+/// Axes of the image in the world: y, which Mitsuba takes as up, is the sky's zenith; without a sky, the axes of the
+/// world.
 Frame axes_of(const std::vector<Surroundings>& lights) {
   for (const Surroundings& s : lights)
     if (s.description.plugin.name == "sky") {

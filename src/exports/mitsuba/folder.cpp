@@ -48,7 +48,7 @@ std::string Folder::add(std::string_view subfolder, std::string_view name, std::
   return relative;
 }
 
-/// The hash is that of the pixels.
+/// The hash is computed from the pixels.
 std::string Folder::add(std::string_view subfolder, std::string_view name, const Image& image) {
   const int size[] = {image.width, image.height};
   const uint64_t hash = hash_of(bytes_of(image.pixels.data(), image.pixels.size()), hash_of(bytes_of(size, 2)));

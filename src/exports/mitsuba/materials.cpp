@@ -104,7 +104,7 @@ void Materials::write_bent(Xml& xml, const ParsedPlugin& bend, const ParsedPlugi
   const Element outer(xml, "bsdf", {{"type", is_map ? "normalmap" : "bumpmap"}, {"id", id}});
   if (is_map) {
     write_normals(context_, xml, "normalmap", p.file("normalmap"), read_rgb(p, "normalmap").image);
-    // As frond, which keeps all energy of the BSDF: no shadows between facets, no turned normals.
+    // As in frond, which keeps all energy of the BSDF: no shadowing between facets, no flipped normals.
     xml.flag("use_shadowing_function", false);
     xml.flag("flip_invalid_normals", false);
   } else {

@@ -55,7 +55,7 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source);
 /// Writes leaf_lambert as Mitsuba's plug-in frond_diffuse, with the shares of both sides.
 bool write_lambertian_leaf(Context& context, Xml& xml, const Materials::Source& source);
 
-/// What stands for a material without an equivalent, for messages.
+/// Substitute for a material without an equivalent, as messages name it.
 inline constexpr std::string_view kStandIn =
     "a Lambertian surface with its reflectance and transmittance at 8 degrees stands for it: its gloss is lost";
 /// Writes a Lambertian reflector and transmitter with the material's reflectance and transmittance at 8 degrees,

@@ -21,7 +21,7 @@ struct MitsubaExport {
 };
 
 /// Writes scene.xml, meshes and textures. Throws InputErrors with all that has no equivalent in Mitsuba, each at its
-/// position in the scene file, unless `unsupported` lets it pass; differences are warned of. `description` must contain
+/// position in the scene file, unless `unsupported` ignores it; differences are warned of. `description` must contain
 /// all overrides.
 void export_to_mitsuba(SceneDescription description, const Registry& registry, const MitsubaExport& request,
                        ThreadPool& pool, const Log& log, const std::filesystem::path& cache);

@@ -154,7 +154,7 @@ std::optional<std::pair<Location, std::string>> Shapes::unsupported_reason(const
   return {};
 }
 
-/// Columns of the table have no equivalent; textures that read them are refused.
+/// Columns of the table have no equivalent; textures that read them are rejected.
 void Shapes::add_table(const ObjectInstances& set, const ShapeDescription& shape, const Params& p, Parts& parts) {
   const auto& objects = context_.description.objects;
   const auto object = std::ranges::find(objects, set.object, &ObjectDescription::name);
@@ -255,7 +255,7 @@ void Shapes::write_quadric(Xml& xml, const Surface& surface, bool is_in_world) {
   Transform::RowsDouble rows = rows_of(map);
   const Element element(xml, "shape", {{"type", name}});
   if (name == "disk") {
-    // Mitsuba's disk has radius 1, and its front looks to +z. A turned one has y and z reversed.
+    // Mitsuba's disk has radius 1, and its front faces +z. A flipped disk has y and z reversed.
     const double turn = is_flipped ? -1 : 1, height = p.real("height");
     for (auto& row : rows) {
       row[3] += row[2] * height;

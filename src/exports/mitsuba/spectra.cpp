@@ -65,7 +65,7 @@ std::string Spectra::frond_wavelengths() const {
   return "hero";
 }
 
-/// Asks for up to four wavelengths at a time, which is what a path carries.
+/// Evaluates up to four wavelengths at a time, the number that a path carries.
 std::vector<double> Spectra::values(const AtWavelengths& at) const {
   std::vector<double> result;
   for (size_t first = 0; first < nm_.size(); first += kLanes) {

@@ -61,7 +61,8 @@ struct ImageFrame {
   }
 };
 
-/// Images that a texture consists of, and the first texture, if any, that is no function of them at one point.
+/// Images that a texture consists of, and the first texture, if any, that is not a function of their values at one
+/// point.
 struct Parts {
   std::vector<const TextureDescription*> images;
   const TextureDescription* other = nullptr;

@@ -21,7 +21,7 @@ struct FloatValue {
 };
 
 /// Returns the value of a parameter. "scale" and "mix" of images with one mapping are an image with the texels of the
-/// largest one. Other textures are reported (Context::lacks); their mean stands for them.
+/// largest one. Other textures are reported (Context::report_unsupported) and replaced by their mean.
 SpectrumValue spectrum_value(Context& context, const ParsedPlugin& plugin, const Params& p, std::string_view name);
 FloatValue float_value(Context& context, const ParsedPlugin& plugin, const Params& p, std::string_view name);
 

@@ -200,7 +200,7 @@ void write_view(Context& context, Xml& xml, const FilmSettings& film, int sample
   if (is_path && p.string("termination") != "roulette")
     context.warn(p.where("termination"), "paths end by Russian roulette in Mitsuba, without bias");
   {
-    // Shadow rays of Mitsuba's path tracer are blocked by masks; those of its volumetric path tracer are not.
+    // Shadow rays of Mitsuba's path tracer are blocked by masks; shadow rays of its volumetric path tracer are not.
     const Element path(xml, "integrator", {{"type", has_alpha(context.description) ? "volpath" : "path"}});
     xml.integer("max_depth", p.integer("maxdepth") + 1);
     if (p.boolean("hidebackground")) {

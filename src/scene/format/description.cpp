@@ -65,7 +65,7 @@ void InstanceList::add(uint32_t object, const SceneTransform& map) {
   objects.push_back(object);
 }
 
-/// The scene's folder is that of its main file. What the command line names is the user's own, wherever it lies.
+/// The scene's folder is the folder of its main file. Files that the command line names are trusted, wherever they lie.
 fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
   fs::path path = found(*this, name, where);
   if (!where.file || where.line == 0) return path;

@@ -64,7 +64,7 @@ struct LightDescription {
   SceneTransform world_from_light;
 };
 
-/// An instance that moves. A moving shape is one of an object of its own.
+/// An instance that moves. A moving shape is stored as a moving instance of an object that contains this shape alone.
 struct MovingInstance {
   uint32_t object;  ///< index in SceneDescription::objects
   AffineMap start, end;

@@ -202,7 +202,7 @@ void DescriptionBuilder::color_space(const std::string& name, const Location& wh
   state_.color_space_where = where;
 }
 
-/// The colour space of a parameter is that of the graphics state at its directive.
+/// A parameter has the colour space of the graphics state at its directive.
 void DescriptionBuilder::note_color_space(std::vector<ParsedParam>& params) const {
   for (ParsedParam& p : params)
     if (p.type == "rgb") p.color_space = state_.color_space;
@@ -355,7 +355,7 @@ uint32_t DescriptionBuilder::current_interface() {
   return uint32_t(index) + 1;
 }
 
-/// The medium's space is that of the current transformation.
+/// The current transformation defines the medium's space.
 void DescriptionBuilder::make_named_medium(const std::string& name, ParsedPlugin plugin) {
   const Location where = plugin.where;
   const size_t index = *medium_called({name, where});

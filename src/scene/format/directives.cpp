@@ -137,7 +137,7 @@ void accelerator(Directive d) {
     d.context.log.warn(plugin.where, fmt::format("unknown accelerator \"{}\": Embree brings its own", plugin.name));
 }
 
-/// A single name is that of both sides.
+/// A single name applies to both sides.
 void medium_interface(Directive d) {
   const auto name = [&d] {
     const Token token = d.quoted();

@@ -22,8 +22,8 @@ struct DirectiveContext {
 /// handled by the parser. Throws InputError, also for unknown directives.
 void execute(const Token& name, DirectiveContext& context);
 
-/// Throws InputError if the first token of an included file is no directive, and not nearly one: the file is none of a
-/// scene, and one error is enough. `where`: of the token.
+/// Throws InputError if the first token of an included file is neither a directive nor a misspelt one: the file is then
+/// not part of a scene, and one error is enough. `where`: of the token.
 void check_begins_scene(const Token& first, const Location& where);
 
 /// Whether the word is a directive, including Include and Import.

@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// Which transforms the directives change: ActiveTransform.
+/// Transforms that directives change: ActiveTransform.
 enum class ActiveTransforms : uint8_t { all, start, end };
 
 /// A transform at the start and at the end of a motion (TransformTimes).

@@ -28,10 +28,10 @@ ParsedParam parsed_numbers(const char* type, const char* name, std::vector<doubl
 /// Adds a parameter, replacing one of the same name.
 void set_param(std::vector<ParsedParam>& params, ParsedParam param);
 
-/// Writes the text's parameters into `plugin`, replacing those of the same name. Types follow from the declarations in
-/// `info`: lists are separated by commas; a spectrum is one number (constant), three (rgb), pairs of wavelength (nm)
-/// and value, a spectrum's name, or an .spd file. Throws InputError at `where` for unknown names and values of the
-/// wrong type.
+/// Writes the text's parameters into `plugin`, replacing parameters of the same name. Types follow from the
+/// declarations in `info`: lists are separated by commas; a spectrum is one number (constant), three (rgb), pairs of
+/// wavelength (nm) and value, a spectrum's name, or an .spd file. Throws InputError at `where` for unknown names and
+/// values of the wrong type.
 void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin);
 
 /// Replaces `plugin` by the plug-in of the text. If the name is the same, other parameters are kept. Throws as

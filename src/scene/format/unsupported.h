@@ -20,7 +20,7 @@ class Unsupported {
   /// Returns the names of all kinds.
   static const std::vector<std::string_view>& kinds();
 
-  /// Kinds of an export that are not in kinds() pass with "all" only.
+  /// Kinds of an export that are not in kinds() are ignored with "all" only.
   bool is_ignored(std::string_view kind) const { return passes_all_ || passing_.contains(kind); }
   /// Warns if the kind is listed; otherwise throws InputError, which names the option --ignore-unsupported. `feature`
   /// and `instead` describe the feature and its replacement: "Camera "realistic"" and "is replaced by "perspective"".

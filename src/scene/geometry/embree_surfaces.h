@@ -30,8 +30,8 @@ inline Ray to_ray(const RTCRay& r) {
 inline Float4 origin(const RTCRay& r) { return Float4{r.org_x, r.org_y, r.org_z, 0}; }
 inline Float4 direction(const RTCRay& r) { return Float4{r.dir_x, r.dir_y, r.dir_z, 0}; }
 
-/// The fourth lane of `o` must be 0, that of `d` is replaced by the time. The ray is written in two halves of 16 bytes,
-/// as Embree loads it; four single stores would stall store forwarding.
+/// The fourth lane of `o` must be 0; the fourth lane of `d` is replaced by the time. The ray is written in two halves
+/// of 16 bytes, as Embree loads it; four single stores would stall store forwarding.
 inline RTCRay from_vectors(Float4 o, Float4 d, float t_max, float time) {
   RTCRay ray;
   d[3] = time;

@@ -115,9 +115,9 @@ class Geometry {
   std::vector<std::pair<uint64_t, std::string>> instance_names() const;
   /// Returns the columns of all tables by name; the range covers all columns of that name.
   std::vector<InstanceColumn> columns() const;
-  /// Returns the indices of the materials that surfaces have, ascending, without those of objects that are not placed.
+  /// Returns the indices of the materials that surfaces have, ascending, except of objects without instances.
   std::vector<uint32_t> materials() const;
-  /// Returns the bounds of one of `surfaces()`, and of all else, instances included, where it is at the begin of the
+  /// Returns the bounds of one of `surfaces()`, and of all other geometry including instances, at the begin of the
   /// exposure.
   Bounds bounds_of(size_t surface) const;
   Bounds bounds_without(size_t surface) const;

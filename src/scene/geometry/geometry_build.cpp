@@ -13,9 +13,9 @@
 namespace frond {
 namespace {
 
-/// Whether the meshes become scenes of their own. Embree builds one tree of triangles and another one of all else, and
-/// each ray visits both; a ground or a wall takes less time as an element of the second one (docs/internals.md,
-/// "Instances").
+/// Whether each mesh becomes a separate Embree scene. Embree builds one tree of triangles and another one of all other
+/// geometry, and each ray visits both; a ground or a wall takes less time as an element of the second tree
+/// (docs/internals.md, "Instances").
 bool has_small_meshes_beside_others(const ObjectParts& parts) {
   constexpr size_t kMostTriangles = 64;
   size_t meshes = 0, triangles = 0;
@@ -27,7 +27,7 @@ bool has_small_meshes_beside_others(const ObjectParts& parts) {
   return triangles <= kMostTriangles && (meshes < parts.surfaces.size() || !parts.instances.empty());
 }
 
-/// Embree calls it while it builds, and gives up if it returns false.
+/// Embree's progress callback: Embree cancels the build if it returns false.
 bool continue_build(void* stop, double /*share*/) { return !static_cast<const StopState*>(stop)->is_requested(); }
 
 }  // namespace

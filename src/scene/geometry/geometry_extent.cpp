@@ -2,7 +2,7 @@
 
 #include "scene/geometry/geometry_object.h"
 
-// What the surfaces of a Geometry are, and how far they reach.
+// Materials and extent of the surfaces of a Geometry.
 
 namespace frond {
 namespace {

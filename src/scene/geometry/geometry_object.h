@@ -45,7 +45,7 @@ struct GeometryObject {
   /// Number of instance numbers that an instance of the object takes: one for each contained instance without further
   /// instances, and one for the object's own surfaces.
   uint64_t ids = 1;
-  float stretch = 1;   ///< largest factor of coordinates from the object's space to those of contained objects
+  float stretch = 1;   ///< largest factor of coordinates from the object's space to the spaces of contained objects
   uint32_t depth = 0;  ///< nesting depth of the contained instances
   /// The object's only primitive if it is analytic: no traversal is needed then.
   const Surface* only_primitive = nullptr;

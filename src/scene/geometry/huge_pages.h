@@ -7,8 +7,8 @@
 
 namespace frond {
 
-/// Allocator of a large array that is read in no order: it asks for pages of 2 MB, which spare most of the searches for
-/// a page's address. Where the system has none, the pages are ordinary ones.
+/// Allocator of a large array that is read in random order: requests pages of 2 MB, which avoids most TLB misses. If
+/// the system has no such pages, ordinary ones are used.
 template <class T>
 struct HugePages {
   using value_type = T;

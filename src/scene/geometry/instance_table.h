@@ -15,8 +15,8 @@
 
 namespace frond {
 
-/// Where a table's instances are: points of its space and of the object's that rows are relative to, because the
-/// coordinates would be large.
+/// Origins of a table: points of its space and of the object's space to which rows are relative, because coordinates
+/// would otherwise be large.
 struct TableOrigins {
   Vec3d table{};   ///< applied to tables whose rows lie far from the origin
   Vec3d object{};  ///< subtracted from the coordinates of the object that the table places

@@ -15,7 +15,7 @@ namespace {
 
 template <class T>
 void append(std::vector<unsigned char>& bytes, T number) {
-  // The largest is that of a float in either type: maps are used in 32 bits.
+  // The limit is that of a 32-bit float in either type, because maps are used in 32 bits.
   if (!std::isfinite(float(number)))
     fail({}, "an instance has numbers beyond {:.2g}, the largest of a table", std::numeric_limits<float>::max());
   const auto* first = reinterpret_cast<const unsigned char*>(&number);
