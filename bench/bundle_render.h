@@ -47,7 +47,7 @@ class BundleRender {
 };
 
 /// Renders both in turn, so that other load affects both equally. Sets the counters us_per_path, of the first, and
-/// `cost`: its time of a path relative to that of the second.
+/// `cost`: its time of a path relative to the second's.
 inline void compare_paths(benchmark::State& state, BundleRender& render, BundleRender& baseline) {
   for (auto _ : state) {
     render.add_bundle();

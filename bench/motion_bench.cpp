@@ -2,8 +2,8 @@
 
 #include "bench/bundle_render.h"
 
-/// CPU time of a path among leaves that move while the shutter is open, relative to that among the same leaves at rest.
-/// Names do not change between releases.
+/// CPU time of a path among leaves that move while the shutter is open, relative to the time among the same leaves at
+/// rest. Names do not change between releases.
 namespace frond {
 namespace {
 

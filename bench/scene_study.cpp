@@ -27,7 +27,7 @@ std::array<Image, 2> images_of(const PairedRender& render, const ColorManager& c
           compare::image_of(render.film(1), scene, channels, colors)};
 }
 
-/// The variance of the difference is the sum of those of the means of two renders and of two reference renders.
+/// The variance of the difference is the sum of the variances of the means of two renders and of two reference renders.
 Estimate offset_of(const RenderPair& renders, const RenderPair& reference, const RenderError& error) {
   const double pixels = double(renders.first.size());
   return {image_error(renders.first, renders.second, reference.first, reference.second).mean_difference,

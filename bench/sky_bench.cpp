@@ -3,8 +3,8 @@
 #include "bench/bundle_render.h"
 #include "core/math/random.h"
 
-/// The light `sky`: time of its functions, and CPU time of a path under it relative to that under a constant sky and a
-/// distant light. Names do not change between releases.
+/// The light `sky`: time of its functions, and CPU time of a path under it relative to the time under a constant sky
+/// and a distant light. Names do not change between releases.
 namespace frond {
 namespace {
 

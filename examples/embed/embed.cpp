@@ -6,7 +6,7 @@
 
 namespace {
 
-/// Tells how far a render is, and could stop it by a std::stop_source whose token goes into the RenderControl.
+/// Reports the progress of a render, and could stop it by a std::stop_source whose token goes into the RenderControl.
 class Dots final : public frond::Progress {
  public:
   void update(double fraction, const frond::RenderStatistics&) override {

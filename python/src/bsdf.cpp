@@ -119,8 +119,8 @@ class FlatBsdf {
     check_directions(wi, "wi");
     return wo.shape(0);
   }
-  /// Throws InputError unless the vector has length 1 within the rounding of a caller's floats. A model need not end
-  /// for others.
+  /// Throws InputError unless the vector has length 1 within the rounding of a caller's floats. A model may not
+  /// terminate for other vectors.
   static void check_direction(const Vec3& v, std::string_view name) {
     constexpr float kRounding = 1e-3f;
     if (!(std::abs(dot(v, v) - 1) < kRounding))

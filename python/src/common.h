@@ -63,10 +63,11 @@ nb::ndarray<nb::numpy, T> to_array(std::vector<T> values, std::vector<size_t> sh
 /// Directions, one a row: unit vectors in the local frame.
 using Directions = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
-/// Throws KeyboardInterrupt, or what else a signal's handler throws, if one has come. Takes the GIL.
+/// Throws the exception of a signal's Python handler, such as KeyboardInterrupt, if a signal has arrived. Takes the
+/// GIL.
 void check_signals();
 
-/// Runs `work` without the GIL on a thread of its own, and meanwhile looks for signals and calls `progress` (None, or
+/// Runs `work` without the GIL on a thread of its own, and meanwhile checks for signals and calls `progress` (None, or
 /// a function of the share that is done) some ten times a second. An exception of either stops the work, and is thrown
 /// here once it has ended.
 void run(const std::function<void(const RenderControl&)>& work, const nb::object& progress);

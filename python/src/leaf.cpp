@@ -58,7 +58,7 @@ nb::dict leaf_table(const std::shared_ptr<SessionHandle>& owner, const std::stri
   return d;
 }
 
-/// Specific absorption of what a leaf is made of, and how much of it there is.
+/// Specific absorption and amount of each constituent of a leaf.
 nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::string& material,
                         const std::vector<double>& wavelengths_nm) {
   const LeafParams leaf = leaf_of(*owner, material);

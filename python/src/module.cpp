@@ -29,7 +29,7 @@ void check_signals() {
 
 namespace {
 
-/// Keeps how far the work is, for whoever asks.
+/// Progress of the work, for another thread.
 class Watch final : public Progress {
  public:
   void update(double fraction, const RenderStatistics&) override { fraction_ = fraction; }

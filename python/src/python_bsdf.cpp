@@ -15,7 +15,7 @@ using namespace nb::literals;
 }
 
 /// A BSDF that is written in Python: an object of frond.Bsdf. Each call takes the GIL, so that renders of it use one
-/// core. In an arena: the object is kept by whoever made this.
+/// core. It lives in an arena; its creator keeps the Python object alive.
 class PythonBsdf final : public Bsdf {
   // Before the functions that call it, because its type is deduced.
   /// Returns the value of `call`. A value of another type than `needed` becomes a TypeError that names the method.

@@ -5,12 +5,12 @@
 
 namespace frond::python {
 
-/// A scene, loaded as the arguments of the job `render` ask for it.
+/// A scene, loaded with arguments of the job `render`.
 struct SceneHandle {
   SceneHandle(std::shared_ptr<SessionHandle> session, Arguments given, bool adaptive)
       : owner(std::move(session)), args(std::move(given)), run{owner->context, args}, task(run, adaptive) {}
 
-  /// Returns what other jobs take the scene from. It refers to this object.
+  /// Returns the scene for other jobs. It refers to this object.
   SceneInMemory in_memory() const {
     return {args.words("scene").front(),
             task.settings(),

@@ -13,7 +13,7 @@ namespace {
 
 using namespace nb::literals;
 
-/// What has been rendered of a scene so far. One thread at a time.
+/// Partial render of a scene. For one thread at a time.
 struct ImageHandle {
   std::shared_ptr<SceneHandle> scene;
   RenderPart part;
@@ -81,8 +81,8 @@ auto arrays_of(Image image) {
 /// Float32 [row][column][3].
 using Rgb = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 
-/// Writes linear colours. The header is that of the file `like`, if it is not empty, without what is no longer true of
-/// these colours. Throws InputError.
+/// Writes linear colours. The header is copied from the file `like`, if it is not empty, without attributes that do not
+/// apply to these colours. Throws InputError.
 void write_rgb(const std::string& path, const Rgb& rgb, std::string space, const std::string& like) {
   check_writable(path);
   std::map<std::string, std::string> text{{"frond:version", FROND_VERSION}};

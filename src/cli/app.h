@@ -17,7 +17,7 @@ struct ParsedCommand {
 };
 
 /// Parses a command line; the only user of CLI11. Returns an exit code if help, the version or an error has been
-/// printed. Throws InputError for a value that a job's record refuses.
+/// printed. Throws InputError for a value that a job's record does not allow.
 std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const* argv);
 
 }  // namespace frond

@@ -8,8 +8,8 @@
 
 namespace {
 
-/// Opens standard streams that the caller has closed: a file of the program would else take the number of one, and
-/// receive what is printed there. Standard input and error become /dev/null; writing to standard output stays an error.
+/// Opens standard streams that the caller has closed: otherwise an opened file could get the number of a standard
+/// stream and receive the output. Standard input and error become /dev/null; writing to standard output stays an error.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) == -1) {

@@ -33,8 +33,8 @@ bool writes_to_standard_output(const Arguments& args) {
   });
 }
 
-/// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped. Exceptions of
-/// plug-ins name them.
+/// Returns the result of `act`; if it throws Stopped, a stopped result without content. Messages of other exceptions
+/// name the plug-ins.
 template <class Act>
 Result run_guarded(const Log& log, std::span<const std::string> plugins, const Act& act) {
   try {

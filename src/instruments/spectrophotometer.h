@@ -8,7 +8,7 @@ namespace frond {
 /// When a measurement ends.
 struct RayBudget {
   int64_t rays = 1'000'000;   ///< at most
-  double standard_error = 0;  ///< above 0: end when those of R, T and A are at most this
+  double standard_error = 0;  ///< above 0: end when the standard errors of R, T and A are at most this
 };
 
 /// Result of a spectrophotometer: shares of the incident light, each with its standard error.
@@ -20,7 +20,7 @@ struct SpectrophotometerMeasurement {
   Estimate subsurface = {};            ///< Rd: reflected after it was inside the leaf, on the lit side
   Estimate reflectance = {};           ///< R = Rs + Rd
   Estimate transmittance = {};         ///< T: leaves by the other side
-  Estimate absorptance = {};           ///< A = 1 - R - T; its error is that of the sum
+  Estimate absorptance = {};           ///< A = 1 - R - T; its error is the error of R + T
 
   /// The largest standard error of R, T and A.
   double standard_error() const;

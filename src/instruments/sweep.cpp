@@ -91,7 +91,7 @@ bool is_swept_to(const Param& p, double end, const SweepOptions& options) {
   return options.infinite_ends || is_share(p) || std::isfinite(end == 0 ? p.range.min : p.range.max);
 }
 
-/// Value of a required parameter that nothing else gives.
+/// Value of a required parameter without a default and without a pinned value.
 ParsedParam placeholder_value(const Param& p) {
   if (const auto options = choices(p); !options.empty()) return options.front();
   if (p.kind == ParamKind::material && p.list) return make_param(p, "string", std::vector<std::string>{"one", "other"});

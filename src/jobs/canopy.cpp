@@ -18,7 +18,7 @@ const std::vector<std::string_view> kAngles = [] {
   return names;
 }();
 
-/// Of maps that are inverted in 32 bits.
+/// Lengths in maps that are inverted in 32 bits.
 constexpr Interval kLengths{1e-9, 1e9};
 
 const JobParam kParams[] = {

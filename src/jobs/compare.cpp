@@ -150,7 +150,7 @@ class StoppingProgress final : public Progress {
 /// Returns a sentence about the models that `frond render` would select for open leaves with this error bound; "" if
 /// the wavelengths have no colours.
 std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& study, const Plan& plan) {
-  // Both kinds of error are those of the report.
+  // Both kinds of error are defined as in the report.
   const std::string limit = run.args.flag("relative") ? "maxrelativerms" : "maxrms";
   SceneDescription description{study.description(), {}, {}, {}};  // without geometry, which the study's scene provides
   const PluginText open{std::string(open_leaf(study.registry()).name),

@@ -62,7 +62,7 @@ constexpr JobParam kParams[] = {
     chart_param("map", "Map of the directions of the worst finding: .svg or .png.", "picture"),
 };
 
-/// Whether the material may refuse values other than its declared defaults: parameters or wavelengths are given, or a
+/// Whether the material may reject values other than its declared defaults: parameters or wavelengths are given, or a
 /// parameter is required.
 bool has_given_values(const MaterialWords& material, const Arguments& args) {
   return !material.plugin.params.empty() || args.given("wavelengths") ||

@@ -223,7 +223,8 @@ std::string kinds_page(const KindsPage& page, const Registry& registry) {
   return text;
 }
 
-/// Returns the page that lists all plug-ins. The anchors of its entries are those of the headings of the other pages.
+/// Returns the page that lists all plug-ins. The anchors of its entries equal the anchors of the headings of the other
+/// pages.
 std::string plugins_page(const Registry& registry) {
   std::string text =
       "# Materials, lights, shapes and other plug-ins\n\n"

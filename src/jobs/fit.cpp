@@ -88,7 +88,7 @@ constexpr leaf::AreaUnit kAreaUnits[] = {leaf::kMicrogramsPerCm2,
 
 /// Returns the parameter of this name that a fit may keep; nullptr if there is none.
 const leaf::LeafNumber* find_fixable_number(std::string_view name) {
-  // R and T do not depend on the shape of the surface, and a fit leaves it as it is.
+  // R and T do not depend on the shape of the surface, and a fit does not change it.
   const leaf::LeafNumber* n = leaf::find_leaf_number(name);
   return n && n->is_parameter() && n->action != leaf::LeafAction::surface ? n : nullptr;
 }
@@ -126,7 +126,7 @@ leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& opt
   if (!value || !(*value >= 0) || !std::isfinite(*value))
     fail({}, "{} {}: {}=NUMBER is needed, 0 at least, in the scene's units or with ug/cm2, mg/cm2 or g/cm2", option,
          word, name);
-  // Without constituents a leaf is possible, without an extent or a structure it is not.
+  // Constituents may be 0, extents and numbers of the structure may not.
   const bool is_positive =
       parameter ? parameter->is_fitted() && !parameter->absorbs() : leaf::parts_of(*content).empty();
   if (is_positive && !(*value > 0)) fail({}, "{} {}: {} is above 0", option, word, name);
@@ -245,7 +245,8 @@ void check_fitted(const leaf::TissueParams& fitted, const MaterialInfo& material
 /// A file as a whole.
 Location location_of(const std::string& file) { return {std::make_shared<const std::string>(file), 0, 0}; }
 
-/// Warns of what the reader has changed: it changes the numbers, so -q shows it too. `name`: of the leaf, or empty.
+/// Warns of values that the reader has changed. This affects the results, so -q shows it too. `name`: of the leaf, or
+/// empty.
 void warn_of_changes(const JobRun& run, const leaf::MeasuredSpectra& measured, const std::string& name) {
   const std::string of = name.empty() ? "" : name + ": ";
   if (measured.derived)
@@ -304,8 +305,8 @@ Result fit_one(const JobRun& run) {
           .text = std::move(text)};
 }
 
-/// Appends the leaves of one file, or of --data if `file` is empty, with their measurements or errors. An error of the
-/// file as a whole is that of a leaf with the file's name, if `keeps_errors`.
+/// Appends the leaves of one file, or of --data if `file` is empty, with their measurements or errors. If
+/// `keeps_errors`, an error of the file as a whole is recorded as the error of a leaf with the file's name.
 void read_leaves(const JobRun& run, const std::string& file, bool keeps_errors, std::vector<LeafFitReport>& leaves) {
   const std::filesystem::path path(file);
   const std::string name = path.filename().string(), stem = file.empty() ? "data" : path.stem().string();
@@ -319,7 +320,7 @@ void read_leaves(const JobRun& run, const std::string& file, bool keeps_errors, 
     leaves.push_back({name, stem, e.what()});
     return;
   }
-  // The warnings of all leaves are those of the file: a thousand lines would hide other messages.
+  // Warnings are reported for the file and not for each leaf: a thousand lines would hide other messages.
   leaf::MeasuredSpectra changes;
   for (leaf::MeasuredLeaf& one : read) {
     if (changes.in_percent.empty()) changes.in_percent = one.spectra.in_percent;
@@ -345,7 +346,7 @@ void fit_one_of_many(const Arguments& args, const MaterialInfo& material, leaf::
   } catch (const InputError& e) {
     leaf.error = e.what();
   }
-  // A table has no spectra: of a thousand leaves they would take a hundred megabytes.
+  // The table does not need the spectra, which would take a hundred megabytes for a thousand leaves.
   request.measurements.clear(), leaf.result.fitted.clear();
   leaf.request = std::move(request);
 }
@@ -395,7 +396,7 @@ Result fit(const JobRun& run) {
   warn_if_nothing_is_kept(run);
   if (!args.given("file") && !args.given("data"))
     fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
-  // Several files are as good as --all-leaves: there is no leaf that could be meant.
+  // Several files imply --all-leaves, because no single leaf can be meant.
   const bool has_files = args.given("file") && args.texts("file").size() > 1;
   if (has_files && args.given("directions"))
     fail({}, "{} compares one leaf, but there are {} files", args.spelled("directions"), args.texts("file").size());

@@ -128,12 +128,12 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
   return measurement ? std::move(measurement) : meter.read();
 }
 
-/// The value of --irradiance for that of the scene's lights.
+/// The value of --irradiance that selects the scene's lights.
 constexpr std::string_view kOfScene = "scene";
 /// Light of photons, which need a unit, where the scene's has none.
 constexpr std::string_view kOfPhotons = "solar-am1.5-global";
 
-/// Returns the spectrum that --irradiance names; nullptr if it is not given, and for that of the scene.
+/// Returns the spectrum that --irradiance names; nullptr if it is not given or selects the scene's lights.
 SpectrumPtr named_irradiance(const JobRun& run) {
   const std::string light = run.args.text("irradiance");
   if (light.empty() || light == kOfScene) return nullptr;
@@ -148,7 +148,7 @@ const ParsedPlugin* light_without_unit(const SceneDescription& description) {
   return nullptr;
 }
 
-/// Returns the name of the light of photons: --irradiance, or that of the scene if it has a unit.
+/// Returns the name of the light of photons: --irradiance, or the scene's light if it has a unit.
 std::string photon_light_name(const JobRun& run, const SceneDescription& description) {
   if (run.args.given("irradiance")) return run.args.text("irradiance");
   return std::string(light_without_unit(description) ? kOfPhotons : kOfScene);
@@ -235,7 +235,7 @@ std::string percent(double share) {
                         : fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0);
 }
 
-/// Reports the errors of single instances, which are far larger than those of all together: in a warning if they are
+/// Reports the errors of single instances, which are far larger than the errors of their sums: in a warning if they are
 /// too large, or larger than --instance-error, else as information.
 void report_instance_errors(const JobRun& run, const FluxMeasurement& measurement, const InstanceErrors& errors) {
   constexpr double kTooLarge = 0.1, kProposed = 0.05;
@@ -254,14 +254,14 @@ void report_instance_errors(const JobRun& run, const FluxMeasurement& measuremen
                       errors.median < 1 ? fmt::format(", which takes about {:.2g} paths", paths) : ""));
 }
 
-/// Warns if the time limit ended the measurement before --rms or --paths was reached. That --instance-error was not is
-/// part of the report on instances.
+/// Warns if the time limit ended the measurement before --rms or --paths was reached. Whether --instance-error was
+/// reached is part of the report on instances.
 void warn_of_end(const JobRun& run, const FluxMeasurement& measurement) {
   if (!run.args.given("instance-error") || run.args.given("rms"))
     warn_of_time_limit(run, measurement.paths, measurement.error());
 }
 
-/// Name of the table of shares, which is written beside that of instances.
+/// Name of the table of shares, which is written beside the table of instances.
 constexpr const char* kShares = "flux";
 
 /// Returns the text for a terminal: the shares, and the instances unless a file has them. With --quiet only the

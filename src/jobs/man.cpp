@@ -57,7 +57,7 @@ std::string paragraph(const std::string& text) {
   return result;
 }
 
-/// Pages of commands are named frond-COMMAND, as those of git.
+/// Pages of commands are named frond-COMMAND, as in git.
 std::string page_name(std::string_view command) { return command.empty() ? "frond" : "frond-" + std::string(command); }
 
 /// Returns the entry of a parameter: its names in bold, the value's name in italics, and the help text.

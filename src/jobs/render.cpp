@@ -255,7 +255,7 @@ class SceneRender {
     if (output_ && samples.most == 0)
       fail(where(), "{}: the time limit ended before any sample was rendered", run_.args.spelled("time-limit"));
     const Log& log = run_.log();
-    uint64_t lost = part.film.not_finite();  // those of plug-ins have been reported by name
+    uint64_t lost = part.film.not_finite();  // samples of faulty plug-ins have been reported by name
     for (const auto& [fault, count] : statistics_.faults) lost -= std::min(lost, count);
     if (lost > 0)
       log.warn({}, fmt::format("{} as its largest value or as black",

@@ -33,7 +33,7 @@ std::vector<std::string_view> engine_names() {
 
 const std::vector<std::string_view> kEngineNames = engine_names();
 
-/// Parameters of the job itself; those of `frond render` are added by JobInfo::extends.
+/// Parameters of the job itself; JobInfo::extends adds the parameters of `frond render`.
 const JobParam kParams[] = {
     JobParam("scene", text, "Scene file.",
              {.type = "SCENE", .path = PathUse::read, .positional = true, .required = true}),
@@ -112,7 +112,7 @@ const Engine& chosen_engine(const Arguments& args) {
 }
 
 /// Returns the absolute path of the image. Throws InputError if it is not the name of a file, or if the engine would
-/// take a part of it for something else.
+/// misinterpret a part of it.
 fs::path image_path(const Arguments& args, const Engine& engine) {
   const fs::path path = fs::absolute(args.text("output"));
   if (!path.has_filename())
@@ -171,8 +171,8 @@ std::string last_lines(const fs::path& printed) {
   return fmt::format("; the end of \"{}\": {}", printed.string(), fmt::join(split(text, '\n'), " | "));
 }
 
-/// Starts the job. Returns what a queue has answered, or nothing if the engine has run the job and printed as it did;
-/// if `is_quiet`, it has printed to a file in the folder. Throws InputError if the engine fails.
+/// Starts the job. Returns the answer of a queue; empty if the engine has run the job itself and printed its progress
+/// (if `is_quiet`, to a file in the folder). Throws InputError if the engine fails.
 std::string start(const Engine& engine, const fs::path& folder, bool is_quiet) {
   const std::vector<std::string> command = command_of(engine, folder);
   if (engine.is_queue) {

@@ -57,7 +57,7 @@ constexpr JobParam kParams[] = {
         {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
 };
 
-/// Resolver for a table's parameters, which must be constants: it refuses textures and other references.
+/// Resolver for a table's parameters, which must be constants: it rejects textures and other references.
 class NoReferences final : public ParamResolver {
  public:
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { reject(); }

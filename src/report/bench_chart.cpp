@@ -19,7 +19,7 @@ std::string time_text(double ns) {
   return fmt::format("{:g} {}", ns < 9.95 ? std::round(10 * ns) / 10 : std::round(ns), kUnits[unit]);
 }
 
-/// CPU time in ns to a standard error of 1 %, at least that of one sample; NaN if nothing is scattered.
+/// CPU time in ns to a standard error of 1 %, at least the time of one sample; NaN if nothing is scattered.
 struct TimeToPercent {
   double ns = NAN, standard_error = 0;
 };

@@ -28,8 +28,8 @@ struct BenchMeasurement {
 /// Returns the CPU time in us until the standard error is 1 % of the mean; infinite if the mean is 0.
 double us_to_percent(const Worth& worth, double variance, const Estimate& time_ns);
 
-/// Returns a chart of the time of hits until the standard error of the lit planes is 1 %, at least that of one hit, at
-/// the largest number of wavelengths: one row for each material, one mark for each angle.
+/// Returns a chart of the time of hits until the standard error of the lit planes is 1 %, at least the time of one hit,
+/// at the largest number of wavelengths: one row for each material, one mark for each angle.
 Chart bench_chart(const std::vector<BenchMeasurement>& measurements);
 /// Throws InputError for more materials or angles than the chart has rows or marks.
 void check_bench_chart(size_t materials, size_t angles);

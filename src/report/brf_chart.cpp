@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMostPanels = 12;
 
-/// Returns the labels of the bands: wavelengths in whole nanometres where these tell the bands apart.
+/// Returns the labels of the bands: wavelengths in whole nanometres if these distinguish the bands.
 std::vector<std::string> labels_of(const std::vector<Band>& bands) {
   std::vector<std::string> labels, exact;
   for (const Band& band : bands) {

@@ -35,7 +35,7 @@ struct Tick {
 
 struct Axis {
   std::string label;  ///< with the unit
-  Range range = {};   ///< empty: that of the points; {low, -HUGE_VAL}: from `low` to the largest point
+  Range range = {};   ///< empty: the range of the points; {low, -HUGE_VAL}: from `low` to the largest point
   bool is_logarithmic = false;
   double step = 0;               ///< between ticks of a linear axis; 0: automatic
   std::vector<Tick> ticks = {};  ///< empty: automatic

@@ -24,11 +24,11 @@ void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Ta
     const auto& numbers = leaf.result.numbers;
     const auto n = std::ranges::find(numbers, &v, &leaf::FittedNumber::variable);
     const bool has = leaf.error.empty() && n != numbers.end();
-    // The error is that of the logarithm; a given number has none.
+    // The error refers to the logarithm; a given number has none.
     table.add(std::string(v.name), has ? n->value : kNone, has && !n->is_fixed ? n->value * n->relative_error : kNone);
     if (has && !n->is_fixed && !n->is_identified()) undetermined.push_back(v.name);
   }
-  // Those that follow others, then those that are the specimen's.
+  // Parameters that follow others, then parameters of the specimen.
   for (const bool follows : {true, false})
     for (const LeafNumber& n : leaf::leaf_parameters())
       if (!n.is_fitted() && n.action != leaf::LeafAction::surface && n.follows.empty() != follows && is_stated(n))

@@ -31,7 +31,7 @@ constexpr double kGoTogether = 0.9;
 /// Whether the leaf absorbs with PROSPECT-D's tables.
 bool is_prospect(const leaf::FitResult& r) { return r.params.absorption_tables == leaf::AbsorptionTables::prospect; }
 
-/// Returns all parameters that a scene file states; those of bifacial leaves are the last.
+/// Returns all parameters that a scene file states; parameters of bifacial leaves are the last.
 std::vector<const LeafNumber*> stated_numbers(const FitReport& report) {
   std::vector<const LeafNumber*> all;
   for (const bool only_bifacial : {false, true})
@@ -50,7 +50,7 @@ std::vector<std::string> undetermined_parameters(const FitReport& report) {
   return names;
 }
 
-/// Returns what the reader must know of an estimate; empty: nothing.
+/// Returns a remark on an estimate; empty: none.
 std::string estimate_note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
   if (n.is_at_bound) return "at a limit of its range: not determined by the data";

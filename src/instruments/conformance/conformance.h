@@ -21,7 +21,7 @@ namespace frond {
 enum class Law : uint8_t {
   parameters,     ///< a plugin reads every parameter it declares and no other, and can be made from its defaults
   sampling,       ///< exact: directions of `sample` are distributed as `pdf` (chi-square over bins of the sphere)
-  agreement,      ///< exact: f and pdf of a sample are those of `f` and `pdf` for its direction
+  agreement,      ///< exact: f and pdf of a sample equal `f` and `pdf` for its direction
   normalisation,  ///< exact: `pdf` integrates to the share of calls of `sample` that give a direction, delta lobes
                   ///< apart; not exact: to 1, or less if there are delta lobes
   energy,         ///< exitant power is at most the incident power at each wavelength; equal for materials claimed to
@@ -76,7 +76,7 @@ struct SphereMap {
 /// Probability with which an error of the size that is called detectable would have been found.
 inline constexpr double kPower = 0.95;
 
-/// What a test has measured, and the smallest error that it would have found.
+/// Measured value of a test, and the smallest error that it would have found.
 struct Measure {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 

@@ -81,8 +81,8 @@ void Examination::integrate_pdf() {
   bound_missed_lobes();
 }
 
-/// The quadrature knows the pilot only, so the share of the other samples in lobes that it has overlooked is the mass
-/// of those lobes.
+/// The quadrature is based on the pilot alone, so the share of the other samples in lobes that it has missed is the
+/// mass of those lobes.
 void Examination::bound_missed_lobes() {
   constexpr double kAlarm = 1e-6;  // probability that the true mass is larger
   const auto part_of = [this](const BsdfSample& sample) -> const SpherePart* {

@@ -22,7 +22,7 @@ double power_weight(const Examination& s, const BsdfSample& sample, int lane) {
 }
 
 /// Mean weight of `sample`, as power; a call without a direction counts as 0. `further` calls are drawn in addition to
-/// those of the examination.
+/// the examination's.
 std::array<Outgoing, kLanes> mean_weights(const Examination& s, int64_t further, uint64_t seed) {
   std::array<Moments, kLanes> moments{};
   std::array<Outgoing, kLanes> result{};
@@ -115,8 +115,8 @@ int64_t further_calls(const Examination& s, const Claims& claims, uint64_t seed)
   return std::max<int64_t>(0, static_cast<int64_t>(calls) - s.drawn);
 }
 
-/// The error that is found is that of a BSDF with the albedo 1 + e and the coefficient of variation of this one's
-/// weights.
+/// The detectable error e is the error of a BSDF with the albedo 1 + e whose weights have this BSDF's coefficient of
+/// variation.
 Measure energy_measure(const Estimate& out, bool lossless) {
   Measure measure{.quantity = "directional albedo", .value = out.mean, .standard_error = out.standard_error()};
   if (out.mean > 0)

@@ -169,8 +169,8 @@ void check_unbiasedness(const Examination& s, Findings& findings) {
   if (s.exact) return;
   for (int lane = 0; lane < s.lambda.count; ++lane) {
     if (!s.lambda.is_active(lane)) continue;
-    // Bins with too few samples for a test of their own are tested together; so is each side as a whole, where small
-    // errors add up.
+    // Bins with too few samples for a separate test are tested together; so is each side as a whole, where small errors
+    // add up.
     BinComparison thin, front, back;
     const auto bins = compare_bins(s, lane);
     const auto map = weight_map(s, bins);

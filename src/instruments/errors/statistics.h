@@ -26,7 +26,7 @@ struct Estimate {
   }
 };
 
-/// Running sums of a sample, for its mean and the error of that.
+/// Running sums of a sample, for its mean and the mean's error.
 class Moments {
  public:
   void add(double x) {

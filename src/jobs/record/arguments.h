@@ -136,8 +136,8 @@ class Arguments {
   std::map<std::string_view, Value> values_;  ///< keys point into declared_
 };
 
-/// Returns what may be meant by a list of numbers that is refused, as the end of an error message; "" if nothing is
-/// known: a descending range with a step above 0, and micrometres if `unit` is nm.
+/// Returns a hint on an invalid list of numbers, as the end of an error message: for a descending range with a step
+/// above 0, and for micrometres if `unit` is nm; otherwise "".
 std::string range_hint(std::string_view text, std::string_view unit);
 
 /// Parses a list of numbers: `8`, `0,8,30`, `0:180:1` (first:last:step, both ends included), or ranges among numbers.

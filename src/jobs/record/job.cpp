@@ -37,7 +37,7 @@ std::string file_name(const JobParam& p, const std::string& word) {
 bool is_path(const JobParam& p, const std::string& word) { return p.path != PathUse::none && word != "-"; }
 
 /// Notes the inputs among the arguments and plans the outputs. Throws InputError if an output cannot be written, is an
-/// input, or is also another output; the job's function plans the files that it writes besides.
+/// input, or is also another output; the job's function plans its further files.
 std::list<PlannedOutput> planned_outputs(const Arguments& args) {
   const auto each_file = [&args](PathUse use, const auto& act) {
     for (const JobParam* p : args.params())

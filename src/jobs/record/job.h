@@ -130,7 +130,8 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
 
 // Helpers that jobs share.
 
-/// Returns the file of a further table beside that of --csv: leaves-flux.csv for the table "flux" beside leaves.csv.
+/// Returns the file of a further table, beside the file of --csv: leaves-flux.csv for the table "flux" beside
+/// leaves.csv.
 std::string csv_beside(const std::filesystem::path& csv, std::string_view table);
 
 /// Returns the material NAME[,parameter=value...], the only word; empty without words. Throws InputError if there are

@@ -18,8 +18,8 @@ bool excludes(const JobParam& a, const JobParam& b) {
   return lists(a, b.name) || lists(b, a.name);
 }
 
-/// Returns the scene's words for a parameter of the job, without those that the job's own replace: swaps of the same
-/// material.
+/// Returns the scene's words for a parameter of the job, without words that the job's own arguments replace: swaps of
+/// the same material.
 std::vector<std::string> kept_words(const SceneInMemory& scene, const Arguments& args, std::string_view name) {
   std::vector<std::string> words = scene.arguments.words(name);
   if (name != "swap" || !args.given(name)) return words;
@@ -30,7 +30,7 @@ std::vector<std::string> kept_words(const SceneInMemory& scene, const Arguments&
   return words;
 }
 
-/// Whether the job takes the scene's value of a parameter. Wavelengths of colours are none of a measurement's bands.
+/// Whether the job inherits the scene's value of a parameter. Wavelengths for colours are not bands of a measurement.
 bool inherits(const SceneInMemory& scene, const Arguments& args, const JobParam& p) {
   if (!args.declares(p.name) || p.name == "strict" || p.positional) return false;
   for (const JobParam* other : args.params())
@@ -55,7 +55,7 @@ void apply_crop(const Arguments& args, ParsedPlugin& film) {
   }
 }
 
-/// Throws InputError for the first file that is no longer as it was.
+/// Throws InputError for the first file that has changed.
 void check_unchanged(const SceneInMemory& scene) {
   for (const FileState& file : scene.files) {
     const std::vector<FileState> now = states_of({file.path});

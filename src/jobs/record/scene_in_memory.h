@@ -46,8 +46,8 @@ struct SceneInput {
 /// Returns the sizes and times of the files, without those that do not exist.
 std::vector<FileState> states_of(const std::vector<std::filesystem::path>& files);
 
-/// Returns the scenes, by the index of their words. If there is one, adds to `args` what it was loaded with and the job
-/// has a parameter for; what is given stays.
+/// Returns the scenes, by the index of their words. If there is one, adds to `args` the arguments that it was loaded
+/// with, except for parameters that the job lacks or that are given.
 std::map<size_t, GivenScene> given_scenes(const std::map<size_t, SceneInMemory>& scenes, Arguments& args);
 
 /// Returns the scenes of a parameter. A scene may consist of several files, the last of which contains WorldBegin.

@@ -48,8 +48,8 @@ inline DisplayChoice display_choice(const Arguments& args) {
   return choice;
 }
 
-/// Reports an automatic exposure, or suggests one for an image that is nearly all black or mostly clipped. `applied` is
-/// that of the written image; empty for an EXR.
+/// Reports an automatic exposure, or suggests one for an image that is nearly all black or mostly clipped. `applied`:
+/// of the written image; empty for an EXR.
 inline void report_exposure(const JobRun& run, bool is_auto, const std::optional<AppliedExposure>& applied,
                             const std::string& output) {
   if (!applied) return;

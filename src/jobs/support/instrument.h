@@ -55,8 +55,8 @@ class MaterialsUnderTest {
   LitMaterial lit_material(size_t i) const;
   const MeasuredMaterial& material(size_t i) const { return materials_[i / per_material()]; }
 
-  /// Returns the progress callback for `shoot` in measurement i. It throws Stopped if the front end has requested a
-  /// stop.
+  /// Returns the progress callback for `tally_rays` in measurement i. It throws Stopped if the front end has requested
+  /// a stop.
   RayProgress progress(size_t i, int64_t rays_each) const;
   /// Returns the sentence that names the illuminant of bands; empty for single wavelengths.
   std::string illuminant_line() const;

@@ -144,7 +144,7 @@ void RenderTask::choose(const ImageOutput* output, std::optional<std::chrono::st
 void RenderTask::load(const ImageOutput* output) {
   const Arguments& args = run_.args;
   scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
-  if (pilot_)  // it was loaded without a word, and its lights are taken over
+  if (pilot_)  // the pilot has loaded the scene without log messages, and its lights are reused
     for (const Light* light : scene_->scene().lights())
       if (const std::string summary = light->summary(); !summary.empty()) run_.log().info(summary);
   if (!args.given("samples")) samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};

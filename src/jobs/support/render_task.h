@@ -23,8 +23,8 @@ class RenderTask {
   void read(const SceneInput& input);
   /// Reads a scene from a string. Errors name it `name`; relative paths in the scene are resolved against `name`.
   void read_text(const std::string& text, const std::string& name);
-  /// Returns the film's file name. Throws InputError, at the film's directive, for one outside of the working folder: a
-  /// scene of somebody else must not choose which file is replaced.
+  /// Returns the film's file name. Throws InputError, at the film's directive, for one outside of the working folder:
+  /// an untrusted scene must not choose which file is replaced.
   const std::string& film_file() const;
   const Location& film_where() const { return film_where_; }
 
@@ -45,7 +45,7 @@ class RenderTask {
   bool is_adaptive() const { return is_adaptive_; }
   /// Returns a part without samples.
   RenderPart empty_part() const;
-  /// Renders the requested samples that the part lacks. `on_change` is that of NoiseRequest.
+  /// Renders the requested samples that the part lacks. `on_change`: as in NoiseRequest.
   RenderStatistics render(RenderPart& part, const RenderControl& control,
                           const decltype(NoiseRequest::on_change)& on_change = {}) const;
 

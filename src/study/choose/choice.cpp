@@ -22,8 +22,8 @@ constexpr size_t kLooks = 10;
 static_assert(kFirstSamples << (kLooks - 1) == kMostSamples);
 /// Share of the time that the cheapest options could save which a pilot may take.
 constexpr double kLargestPart = 0.25;
-/// Share of the final render's paths that a pilot may trace if its answer is what is wanted, and the least number of
-/// samples that it may take then.
+/// Share of the final render's paths that a pilot may trace if the selection itself is requested, and the least number
+/// of samples that it may then take.
 constexpr double kLargestPartOfQuestion = 0.25;
 constexpr uint64_t kLeastLimit = 64;
 

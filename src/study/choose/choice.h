@@ -74,7 +74,7 @@ struct Choice {
   uint64_t pilot_samples = 0;  ///< per pixel of the pilot, in each of two renders
   size_t comparisons = 0;      ///< number of bounds that hold jointly
   PilotCost pilot;
-  double price = 1;              ///< of a sample of the selected options, over that of the reference
+  double price = 1;              ///< of a sample of the selected options, relative to the reference
   double reference_seconds = 0;  ///< CPU time of the final render with the reference, by the pilot's measurement
 
   /// Whether the pilot has measured noise.

@@ -15,12 +15,12 @@ struct ModelOption {
   /// CPU time of a sample relative to the first option. A constant measured beforehand (docs/selection.md), because
   /// measured times vary and equal commands must give equal images.
   double price;
-  /// Whether the option renders the image that the search holds for right. It is then a leaf's last option.
+  /// Whether the option renders the image that the search takes as correct. It is then a leaf's last option.
   bool is_exact = false;
 };
 
 /// Options to select from. Each list is sorted from the cheapest on; its last option is exact. Other options may be
-/// exact too: a leaf has those up to the first that it does not refuse.
+/// exact too: a leaf has the options up to the first exact one that it supports.
 struct Ladder {
   std::vector<ModelOption> models, wavelengths;
 };

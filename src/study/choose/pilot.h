@@ -21,7 +21,7 @@ struct ChoiceTask {
   uint64_t samples;               ///< per pixel of the final render; 0: the scene's number
   const Scene* other = nullptr;   ///< scene with the same geometry, which is then shared; may be nullptr
   bool is_question = false;       ///< the selection is the result: it is made even if it cannot save time
-  /// The search ends then, with the reference; none: it ends by itself.
+  /// Deadline at which the search ends with the reference; none: no deadline.
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
 };
 
@@ -82,7 +82,7 @@ class Pilot {
   using Halves = std::array<std::vector<float>, 2>;
 
   Render make(const Configuration& answers);
-  /// `render` without a deadline of its own.
+  /// `render` without a deadline.
   void advance(const Configuration& answers, uint64_t samples);
   const Render& rendered(const Configuration& answers) const;
   Halves images(const Render& render) const;

@@ -50,7 +50,7 @@ struct CandidateResult {
   Image early = {},
         late = {};  ///< for display: one render at `Comparison::early_samples`; mean of both after the last run
 
-  /// Returns the convergence. The bias is that of the last run, which has the least noise.
+  /// Returns the convergence. The bias is taken from the last run, which has the least noise.
   Convergence convergence(Region region, size_t channel = kTogether) const;
 };
 
