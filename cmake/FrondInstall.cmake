@@ -38,13 +38,13 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
 endif()
 install(FILES "${frond_manual_dir}/_frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${frond_zsh_folder}"
         COMPONENT ${frond_share_component})
-# As they are in the repository; canopy/make makes the tables of leaves that those of canopy name.
+# The scenes of the repository; canopy/make generates the tables of leaves that the canopy scenes name.
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT ${frond_share_component}
         USE_SOURCE_PERMISSIONS PATTERN ".gitignore" EXCLUDE PATTERN "*.md" EXCLUDE PATTERN "image.*" EXCLUDE PATTERN "generator" EXCLUDE
         REGEX "scenes/canopy/[^/]*[.]npy$" EXCLUDE)
 
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}" COMPONENT development)
-# Those of an earlier installation that are gone would be found.
+# Removes headers of an earlier installation, which the compiler would find.
 install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/frond\")"
         COMPONENT development)
 install(DIRECTORY "${frond_headers}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" COMPONENT development

@@ -1,5 +1,5 @@
-# frond_march: for what libfrond.so is compiled; frond_march_link: what tells the loader of it; frond_march_v3: for the second
-# library of FROND_INSTRUCTIONS `both`.
+# frond_march: for what libfrond.so is compiled; frond_march_link: the linker's flags that inform the loader;
+# frond_march_v3: for the second library of FROND_INSTRUCTIONS `both`.
 if(NOT FROND_INSTRUCTIONS MATCHES "^(baseline|native|both)$")
   message(FATAL_ERROR "FROND_INSTRUCTIONS is baseline, native or both, not \"${FROND_INSTRUCTIONS}\"")
 endif()

@@ -5,7 +5,7 @@ set(CPACK_PACKAGE_NAME frond)
 set(CPACK_PACKAGE_VENDOR "The frond developers")
 set(CPACK_PACKAGE_CONTACT "The frond developers <developers@frond.invalid>")
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
-# Of the Debian that it is built on: 1~deb12u1.
+# Revision by the Debian release of the build: 1~deb12u1.
 cmake_host_system_information(RESULT distribution QUERY DISTRIB_INFO)
 string(REPLACE debian deb CPACK_DEBIAN_PACKAGE_RELEASE "1~${distribution_ID}${distribution_VERSION_ID}u1")
 set(frond_deb_version "${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
@@ -19,7 +19,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME frond)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_CURRENT_BINARY_DIR}")  # libfrond itself
-# What dpkg knows of the libraries; CPack's own list would have the library for AVX2 as a second one of the same name.
+# Shared libraries for dpkg; CPack's own list would contain the library for AVX2 as a second library of the same name.
 set(soname_version "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
 file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/shlibs" "libfrond ${soname_version} frond (= ${frond_deb_version})
 libfrond_image ${soname_version} frond (= ${frond_deb_version})\n")

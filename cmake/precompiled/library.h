@@ -1,5 +1,5 @@
-// What most sources of the library include: compiled once (FROND_PRECOMPILED_HEADERS). Sources include what they need
-// themselves: builds without it (preset debug) find out where one does not.
+// Headers that most sources of the library include: compiled once (FROND_PRECOMPILED_HEADERS). Sources include what
+// they need themselves: builds without it (preset debug) find out where one does not.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

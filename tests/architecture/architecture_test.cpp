@@ -190,7 +190,7 @@ TEST(Architecture, AnIncludeTheOtherWayIsFound) {
   EXPECT_EQ(violations(includes, kAllowed, inside).count("scene/format: unknown folder"), 1u);
 }
 
-// What is longer, or fuller, is to be divided.
+// Longer files and fuller folders must be divided.
 TEST(Architecture, FilesAndFoldersAreSmall) {
   constexpr int kMostLines = 500, kMostFiles = 40;
   std::map<std::filesystem::path, int> files;
@@ -289,7 +289,7 @@ std::set<std::string> names_of_leaf_models() {
   return names;
 }
 
-/// What treats leaf models differently follows from their records, so that a model of a shared object is treated alike.
+/// Code distinguishes leaf models by their records only, so that models of shared objects are treated equally.
 TEST(Architecture, LeafModelsAreNamedByMaterialsAndExportsAlone) {
   const std::set<std::string> names = names_of_leaf_models();
   EXPECT_GE(names.size(), 4u);
@@ -407,7 +407,7 @@ TEST(Architecture, OpenImageIOIsCalledByItsModuleAlone) {
   EXPECT_GE(includes, 1);
 }
 
-// It reads files of strangers: only the program that imports/model_reader.h starts calls it.
+// assimp reads untrusted files: only the program that imports/model_reader.h starts may call it.
 TEST(Architecture, AssimpIsCalledByItsModuleAlone) {
   static const std::regex library(R"re(#include <assimp/)re");
   int includes = 0;

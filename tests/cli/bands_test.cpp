@@ -117,7 +117,7 @@ TEST_F(BandCommands, WriteTheResponsesPointByPoint) {
   EXPECT_EQ(file.header.text.at("S0.narrow"), "839.25nm:0;840.25nm:0.125;841.25nm:0;");
 }
 
-/// Of one mean wavelength.
+/// Bands with equal mean wavelengths.
 TEST_F(BandCommands, HaveNamesInImagesPartsAndConversions) {
   folder_.write("par.spd", "400 1  700 1");
   folder_.write("green.spd", "540 1  560 1");

@@ -20,7 +20,7 @@ using ::testing::Not;
 using testing::StartsWith;
 using Json = nlohmann::json;
 
-/// As short as can be.
+/// The shortest run.
 Outcome bench(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "bench");
   arguments.insert(arguments.end(),

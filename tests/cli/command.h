@@ -10,7 +10,7 @@
 
 namespace frond {
 
-/// What a command left behind.
+/// Result of a command.
 struct Outcome {
   int code;
   std::string out, err;

@@ -218,7 +218,7 @@ TEST_F(Commands, RenderWritesWhatItSays) {
   EXPECT_LT(file.image.at(12, 8, *file.image.channel("R")), 0.6);
 }
 
-/// What cannot be rounded to eleven bits is not, in a file of halves either.
+/// Channels that eleven bits cannot represent are stored as floats in a file of halves, too.
 TEST_F(Commands, ChannelsOfWhatIsMetFirst) {
   std::ifstream in(path("scene.pbrt"));
   std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -73,7 +73,7 @@ TEST_F(Fitting, NamesWhatItDerivesAndWhatItDoesNotUse) {
   EXPECT_TRUE(r_json["rmse_R"].is_number());
 }
 
-// The leaf that was measured is the one that is fitted, from its R and T, so that little remains by direction.
+// The fitted leaf is the measured one, so that the differences by direction are small.
 TEST_F(Fitting, ComparesByDirection) {
   const std::string table = name_of("directions.csv"), spectra = name_of("spectra.csv"), json = name_of("fit.json");
   const std::string nm = "450,500,550,600,650,680,720,760,800,900,1000,1200,1450,1650";
@@ -268,7 +268,7 @@ TEST_F(FittingMany, FilesCanShareNamesOfLeaves) {
   EXPECT_THAT(bytes_of(name_of("leaves.pbrt")), AllOf(HasSubstr("\"a.csv/oak\""), HasSubstr("\"b.csv/oak\"")));
 }
 
-/// As Ctrl-C requests it.
+/// A stop as by Ctrl-C.
 TEST_F(FittingMany, WritesNothingIfItIsStopped) {
   const JobInfo& job = find_job("fit");
   Arguments args(params_of(job), command_spelling);

@@ -67,7 +67,7 @@ const std::string kUses[] = {
     "\"FILE\"",
     "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"FILE\"\nMediumInterface \"m\" \"\""};
 
-/// Contents that the readers take for theirs up to a word that must not be told.
+/// Contents that the readers accept up to a word that no message may quote.
 const std::string kSecrets[] = {
     "Xq7ThisIsSecret1 Xq7ThisIsSecret2\nXq7ThisIsSecret3\n",
     "Material \"Xq7ThisIsSecret\"\nShape \"Xq7ThisIsSecret\" \"float Xq7ThisIsSecret\" "

@@ -8,7 +8,7 @@
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 
-/// What commands say of images that hold more than they use, or values that are no numbers.
+/// Messages about images with unused content or values that are not finite.
 namespace frond {
 namespace {
 

@@ -484,7 +484,7 @@ TEST_F(ImportCommand, ArgumentsAreChecked) {
               HasSubstr("needs the extension .pbrt"));
 }
 
-/// Names of a stranger's files and materials are no directives.
+/// Names in untrusted files cannot become directives.
 TEST_F(ImportCommand, NamesAreQuoted) {
   folder_.write("a\nInclude \"x\".obj", std::string(kQuad) + "usemtl a\"b\\c\nf 1 2 3\nusemtl \xff\nf 1 3 4\n");
   imported("a\nInclude \"x\".obj");

@@ -56,7 +56,7 @@ TEST_F(InstancesCommand, ARadiusIsTheSize) {
   EXPECT_EQ(table_of("radius,x,y,z,nx,ny,nz\n0.05,1,2,3,0,0,1\n.1,0,0,1,0,0.6,0.8\n",
                      "the object that is placed has the radius 1"),
             plain);
-  // As Eradiate and RAMI write leaf clouds.
+  // A leaf cloud in the format of Eradiate and RAMI.
   EXPECT_EQ(table_of("0.05 1 2 3 0 0 1\n.1 0 0 1 0 0.6 0.8\n", "taken as radius x y z nx ny nz"), plain);
   EXPECT_THAT(refusal("0.05 1 2 3 0 0 1\n.1 0 0 1 0 0.6 0.9\n"),
               HasSubstr("bad.csv:2:10: the normal has the length 1.08"));

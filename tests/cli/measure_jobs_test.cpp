@@ -22,7 +22,7 @@ TEST(MaterialText, IsOneWord) {
     EXPECT_THAT(error_of([&] { material_text(words); }), HasSubstr("one word with commas, as in leaf,specimen=maize"));
 }
 
-/// As when blanks separated the parameters: figures remain.
+/// The seed is the same as when blanks separated the parameters, so that results do not change.
 TEST(MaterialText, HasTheSeedOfItsWords) {
   EXPECT_EQ(material_seed("mix,materials=abm,diffuse,amount=0.2"), hash_bytes("mix materials=abm,diffuse amount=0.2"));
   EXPECT_EQ(material_seed("abm"), hash_bytes("abm"));

@@ -44,7 +44,7 @@ Shape "sphere" "float radius" .5
     const Outcome o = frond_command(arguments);
     ASSERT_EQ(o.code, 0) << o.err;
   }
-  /// A part of some samples, and what else there is to say.
+  /// Renders a part of some samples, with further arguments `more`.
   std::string part(const std::string& samples, std::vector<std::string> more = {}) const {
     const std::string file = path(fmt::format("{}.part", count_++));
     more.insert(more.end(), {"--part", file, "--samples", samples});

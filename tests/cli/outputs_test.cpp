@@ -152,7 +152,7 @@ TEST_F(Outputs, TwoScenesWithOneFilmFileAreRefused) {
   EXPECT_THAT(refusal({"render", "a.pbrt", "b.pbrt", "--no-cache", "-q"}), HasSubstr("are both written to film.exr"));
 }
 
-/// As --json -q, by which a file -q was written.
+/// Such as --json -q, which would write a file -q.
 TEST_F(Outputs, NamesThatBeginWithADashAreRefusedWithTheFix) {
   scene("scene.pbrt", "Material \"diffuse\"");
   EXPECT_THAT(refusal({"brf", "scene.pbrt", "--json", "-q"}), AllOf(HasSubstr("--json"), HasSubstr("write ./-q")));

@@ -1,4 +1,4 @@
-// What users of pbrt type, `frond check`, --strict and --ignore-unsupported.
+// Options of pbrt-v4, `frond check`, --strict and --ignore-unsupported.
 #include <gmock/gmock.h>
 
 #include <algorithm>

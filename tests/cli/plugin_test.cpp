@@ -65,7 +65,7 @@ TEST(Plugin, WhatIsNoneIsRefusedWithAReason) {
   EXPECT_THAT(refusal(library("wrong_kind")), HasSubstr("offers \"lost\" as a material, but calls it a light"));
 }
 
-/// So a change of any other header refuses none.
+/// A change of any other header then does not reject the plug-in.
 TEST(Plugin, RecordsTheHeadersThatItIncludesAndNoOthers) {
   std::ifstream file(library("kinds"), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};

@@ -38,7 +38,7 @@ class Terminal {
     size.ws_col = columns, size.ws_row = rows;
     EXPECT_EQ(::ioctl(screen_, TIOCSWINSZ, &size), 0);
   }
-  /// All that was written; it is closed then.
+  /// Returns the whole output and closes the terminal.
   const std::string& text() {
     if (!reader_.joinable()) return text_;
     std::fclose(file_);

@@ -13,7 +13,7 @@ using ::testing::Not;
 /// Numbers that are probably in another unit than the parameter's.
 class UnitHints : public ::testing::Test {
  protected:
-  /// What frond says about a scene with a directive in line 2.
+  /// Messages about a scene with a directive in line 2.
   Outcome check(const std::string& directive, bool is_strict = false) {
     const std::string scene =
         folder_.write("s.pbrt", "WorldBegin\n" + directive + "\nLightSource \"infinite\"\nShape \"disk\"\n").string();

@@ -54,7 +54,7 @@ const PluginInfo kWholeInfo{"light", "whole", "For tests.", "", kWhole};
 
 const PluginInfo kNeedyInfo{"shape", "needy", "For tests.", "", kNeedy};
 
-/// Keeps what it was asked for.
+/// Records its requests.
 class RecordingResolver final : public ParamResolver {
  public:
   std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location&) override {

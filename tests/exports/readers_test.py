@@ -1,4 +1,4 @@
-"""What frond export writes, read by the programs that it is for. Each test is skipped, by name, where its program is not."""
+"""Files of frond export, read by the programs that they are for. A test is skipped, by name, if its program is missing."""
 
 import csv
 import importlib.util
@@ -41,7 +41,7 @@ class ReadersTest(FrondTest):
         return path
 
     def python(self, python, code, *words):
-        """What the program prints, as JSON."""
+        """Returns the program's output, parsed as JSON."""
         return json.loads(subprocess.run([python, "-c", code, *map(str, words)], check=True, capture_output=True,
                                          text=True).stdout)
 

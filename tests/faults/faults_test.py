@@ -1,5 +1,5 @@
-"""What renders do when a disk is full, a folder takes no file, an input changes, a second render has the same output, or
-they are killed at a bad moment: each says what is wrong, and leaves nothing half-written."""
+"""Renders on a full disk, in a read-only folder, with an input that changes, with a second render of the same output, or killed at any
+time: each reports its error and leaves no incomplete file."""
 
 import contextlib
 import errno

@@ -1,4 +1,4 @@
-// What the process that reads a model returns, and the geometry that is made of it.
+// Output of the process that reads a model, and the geometry made from it.
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// OBJ and MTL files, separated by a zero byte: what the reader library is given is read again as it is.
+// OBJ and MTL files, separated by a zero byte: the text for the reader library is read again without a change.
 
 #include "imports/obj_text.h"
 

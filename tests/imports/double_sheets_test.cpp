@@ -118,7 +118,7 @@ TEST(DoubleSheets, SizesMayDifferByAMillionAndTrianglesBeEqual) {
   EXPECT_THAT(found({mesh}, 1e-6), ElementsAre(DoubleSheet{0, 100'000, 0}));
 }
 
-/// Of triangles that all hide each other not every pair is compared.
+/// If all triangles hide each other, the search stops before it has compared every pair.
 TEST(DoubleSheets, ASearchWithoutEndIsGivenUp) {
   std::vector<PlantMesh> meshes(2, PlantMesh{{}, "mesh"});
   for (uint32_t i = 0; i < 20'000; ++i)

@@ -6,8 +6,8 @@
 #include "tests/materials/support.h"
 #include "tests/support/slow.h"
 
-/// What abm's f estimates is known without noise: the solution of the same walk. So a bias shows against the noise of
-/// one estimate, not of two.
+/// The expectation of abm's f is known without noise: the solution of the same walk. A bias is therefore compared with
+/// the noise of one estimate and not of two.
 namespace frond::test {
 namespace {
 

@@ -55,7 +55,7 @@ TEST(Flip, ShowsWhatADisplayShows) {
   EXPECT_EQ(mean_flip(uniform({0, 0, 0}), uniform({-1, 0, 0})), 0);
 }
 
-/// What the authors' own program (flip-evaluator 1.7 of the Python package index) finds for the same pixels. It
+/// Results of the authors' own program (flip-evaluator 1.7 of the Python package index) for the same pixels. It
 /// computes in single precision with rounded constants.
 TEST(Flip, AgreesWithTheAuthorsProgram) {
   constexpr double kClose = 1e-3;

@@ -117,7 +117,7 @@ TEST(Goniophotometer, MeasuresALeafWithThreeLobes) {
   expect_agreement(leaf, 45, DetectorSphere(12, 7), 300000);
 }
 
-// What the walk sends out and what f says of the walk are estimated apart: two-sample test in every patch.
+// The walk's exitant light and the integral of its f are estimated independently: two-sample test in every patch.
 TEST(Goniophotometer, AgreesWithTheWalksOwnF) {
   const Prepared leaf("abm", {}, 800);
   const LitMaterial lit = leaf.under(30);

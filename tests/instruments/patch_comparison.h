@@ -8,7 +8,7 @@
 
 namespace frond::test {
 
-/// How far the patches that rays have filled are from what they should hold.
+/// Deviation of the patches' ray counts from their expectations.
 struct PatchComparison {
   ChiSquare chi_square;         ///< over patches and the rays that none has caught
   double largest = 0;           ///< difference of one patch in standard errors: of a normal variable that is as rare
@@ -22,8 +22,8 @@ inline double score(double count, double rays, double probability) {
   return p < 1 ? normal_upper_quantile(p / 2) : 0;
 }
 
-/// All rays that leave weigh 1, as those of an analog walk: then the counts are multinomial, and the exact integrals
-/// tell their variances too.
+/// All exitant rays must have weight 1, as in an analog walk: then the counts are multinomial, and the exact integrals
+/// determine their variances too.
 inline PatchComparison compare(const GoniophotometerMeasurement& walked, const GoniophotometerMeasurement& exact) {
   PatchComparison result;
   const auto rays = static_cast<double>(walked.rays);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi_d = std::numbers::pi;
 
-/// Of a smooth function over [0, 1], by Simpson's rule.
+/// Integral of a smooth function over [0, 1], by Simpson's rule.
 double integral(const std::function<double(double)>& g) {
   constexpr int kSteps = 2000;
   double sum = g(0) + g(1);
@@ -106,8 +106,8 @@ TEST(SampleWorth, LightThatIsTransmittedIsSeenFromTheBack) {
   EXPECT_LT(worth_of("diffuse", 135, 1000).sky.mean.mean, 1e-12);
 }
 
-/// The walk's f is a random estimate, that of the solution is not: both have the same mean, and the sun tells them
-/// apart.
+/// The walk's f is a random estimate, the solution's f is exact: both have the same mean, but different variances under
+/// the sun.
 TEST(SampleWorth, TheSunTellsARandomFFromAnExactOne) {
   const SampleWorth walk = worth_of("abm", 45, 200000), solved = worth_of("leaf_solved", 45, 20000);
   for (const auto worth : {&SampleWorth::albedo, &SampleWorth::sky, &SampleWorth::sun}) {

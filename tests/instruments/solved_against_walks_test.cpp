@@ -7,8 +7,8 @@
 #include "tests/instruments/specimen.h"
 #include "tests/support/slow.h"
 
-/// What leaf_solved says of a leaf against walks of abm, by the goniophotometer: all directions out, in single
-/// precision and in great number. f is integrated over each patch, so that nothing but the walks' noise is left.
+/// Compares leaf_solved with walks of abm by the goniophotometer: all exitant directions, many walks in single
+/// precision. f is integrated over each patch, so that only the walks have noise.
 namespace frond::test {
 namespace {
 
@@ -55,7 +55,7 @@ void record(const std::string& name, const PatchComparison& c) {
   tell("largest", c.largest), tell("l2", c.l2), tell("l2_noise", c.l2_noise);
 }
 
-/// Against a fine table, so that the solution itself is under test; the default table is told beside it.
+/// Against a fine table, so that the solution itself is under test; the deviation of the default table is reported too.
 void expect_walks_fill_patches(const Setting& s, int64_t rays, size_t tests) {
   const ThreadPool pool;
   const DetectorSphere sphere(20, 40);

@@ -27,7 +27,7 @@ SpectrophotometerMeasurement measure(const LitMaterial& lit, int64_t rays) {
   return measure_shares(lit, {.rays = rays}, kPool);
 }
 
-/// Probability of these figures or stranger ones if the truth is `expected`.
+/// Probability of these figures or less likely ones if the truth is `expected`.
 double p_of(const Estimate& measured, double expected) { return equality_p(measured, {expected, 0, 0}, kFloat); }
 
 TEST(Spectrophotometer, FindsTheReflectanceAndTransmittanceOfALambertianSurface) {

@@ -40,7 +40,7 @@ TEST(Mix, OfManyStochasticMaterialsHasRoomForThem) {
   for (const std::string wavelengths : {"smpte", "hero"}) {
     const Film film = render_text(scene(mixtures(4, abm)), {.samples = 64, .wavelengths = wavelengths});
     EXPECT_EQ(film.not_finite(), 0u);
-    // Of one material with itself it is that material.
+    // A mixture of a material with itself equals the material.
     const Film one = render_text(scene(mixtures(0, abm)), {.samples = 64, .wavelengths = wavelengths});
     for (size_t c = 0; c < 3; ++c) {
       const auto a = testing::channel_mean(film, c), b = testing::channel_mean(one, c);

@@ -336,7 +336,7 @@ TEST(Path, CountsHowPathsEnd) {
   EXPECT_EQ(s.ends.absorbed[0], kPaths);
   render_text(looking_down(light + kGrey + kPlane), settings);
   EXPECT_EQ(s.ends.escaped[1], kPaths);
-  // What goes through the sheet ends on the black plane beneath it, which is wide but not endless.
+  // Transmitted light is absorbed by the black plane beneath the sheet, which is wide but finite.
   render_text(looking_down(light + half + kPlane + below + black + kPlane), settings);
   EXPECT_EQ(s.ends.escaped[1] + s.ends.absorbed[1], kPaths);
   EXPECT_NEAR(double(s.ends.absorbed[1]), kPaths / 2.0, kSigmas * std::sqrt(kPaths / 4.0));

@@ -155,7 +155,7 @@ class RandomMesh {
   std::vector<Step> steps_;
 };
 
-/// Rays that leave a hit, and those of them that meet what they must not.
+/// Number of rays that leave a hit, and of rays that hit the same surface again.
 struct Tally {
   uint64_t rays = 0, again = 0;
 };

@@ -156,7 +156,7 @@ class Kill(FrondTest):
 
     @staticmethod
     def cpu_seconds(process):
-        """Of a process that has been killed."""
+        """CPU time of a process that has been killed."""
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         return usage.ru_utime + usage.ru_stime

@@ -150,7 +150,7 @@ TEST(Planted, TransmissionThatIsNeverSampledBreaksCoverage) {
 
 // Maps.
 
-/// Of the directions of one law's worst finding.
+/// Returns the map of directions of one law's worst finding.
 SphereMap map_of_worst(const MaterialInfo& info, Law law, const Claims& claims = {}) {
   const Findings found = findings(info, claims, GivenWavelengths({608, 551, 455}), {.maps = true});
   return *summarise(found)[static_cast<size_t>(law)].worst->map;

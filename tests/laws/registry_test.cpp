@@ -15,8 +15,8 @@
 namespace frond::test {
 namespace {
 
-/// Of each test here: with a handful of materials and five tests each, a new seed raises a false alarm in this file
-/// less than once in 10,000 times.
+/// False-alarm rate of each test here: with a handful of materials and five tests each, a new seed raises a false alarm
+/// in this file less than once in 10,000 times.
 constexpr double kFalseAlarmRate = 1e-6;
 
 const MaterialInfo& material(std::string_view name) {
@@ -60,12 +60,12 @@ ParsedParam falling(const std::string& name, double at_400, double at_700) {
 const SweepOptions kSweep{
     .pinned = {given("string", "tablemethod", std::string("montecarlo")), given("integer", "tablerays", 100.0),
                given("float", "tolerance", 0.02),
-               // Of layers: walks that take their time say no more.
+               // Layered materials: longer walks would not make the tests more sensitive.
                given("integer", "nsamples", 2.0), given("integer", "maxdepth", 20.0),
                given("string", "filename", std::string(FROND_SOURCE_DIR "/tests/pbrt_reference/metal.bsdf"))}};
 
-/// Of coats over something, roughness and g stay where they are likely: far from that, as with slopes a thousand times
-/// wider one way than the other, or g = 0.99 under a smooth coat, the mean of so few walks is no estimate of f's.
+/// For coated materials, roughness and g have likely values: with slopes a thousand times wider in one direction than
+/// in the other, or g = 0.99 under a smooth coat, the mean of so few walks does not estimate the mean of f.
 SweepOptions sweep_of(const MaterialInfo& info, bool smooth_coat = false) {
   SweepOptions options = kSweep;
   if (!info.name.starts_with("coated")) return options;
@@ -272,7 +272,7 @@ TEST(LeafSimplified, ObeysWithATableThatWasSolved) {
   expect_lawful(material("leaf_simplified"), {&set, 1}, GivenWavelengths({550}), {});
 }
 
-/// Of a `mix`, half and half, of a built-in material and another one.
+/// Tests a `mix` of equal shares of a built-in material and another one.
 void expect_lawful_mixture(const MaterialInfo& other,
                            const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
   const PlainResolver resolver([&other](const std::string& name) {
@@ -297,7 +297,7 @@ struct NotThere final : Material {
   const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
 };
 
-/// A built-in material of its own parameters, as half of a `mix`.
+/// A built-in material with its parameters, as one half of a `mix`.
 struct Half {
   std::string name;
   std::vector<ParsedParam> params = {};
@@ -306,7 +306,7 @@ const Half kOpaque{"diffuse"}, kSheet{"diffusetransmission"}, kPane{"thindielect
 const Half kGlass{"dielectric", {level("eta", 1.5), given("float", "roughness", 0.3)}};
 const Half kWater{"dielectric", {level("eta", 1.3), given("float", "roughness", 0.3)}};
 
-/// Of the first set that the sweep of `mix` has.
+/// The two halves of the first set in the sweep of `mix`.
 class Halves {
  public:
   Halves(const Half& one, const Half& two) : one_(one), two_(two) {}
@@ -346,7 +346,7 @@ TEST(Mix, ClaimsReciprocityWhereNothingIsRefracted) {
     }
 }
 
-/// What it need not claim: a mixture has one index, by which the laws count its power.
+/// A mixture need not claim reciprocity: it has a single index, by which the laws convert radiance to power.
 TEST(Mix, IsReciprocalUnlessBothLetLightThroughAndRefractItOtherwise) {
   const Claims reciprocal{.reciprocal = true};
   EXPECT_THAT(Halves(kOpaque, kGlass).broken(reciprocal), ::testing::IsEmpty());

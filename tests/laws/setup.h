@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// How a failed test names a law.
+/// Prints a law in messages of failed tests.
 inline void PrintTo(Law law, std::ostream* out) { *out << law_name(law); }
 
 }  // namespace frond
@@ -34,7 +34,7 @@ class StratifiedWavelengths final : public WavelengthStrategy {
   std::string_view film_space() const override { return "XYZ"; }
 };
 
-/// What it takes to make a material ready without a scene.
+/// Arguments to prepare a material without a scene.
 struct Setup {
   explicit Setup(const WavelengthStrategy& wavelengths) : preparation{wavelengths, pool, log, {}} {}
 

@@ -39,7 +39,7 @@ std::vector<BatchRay> batch(const Tissue& tissue, const Vec3d& wo, Absorption ab
   return out;
 }
 
-/// How often each fate befell.
+/// Number of rays by fate.
 using Counts = std::array<int64_t, 4>;
 
 int64_t count(const Counts& counts, Fate fate) { return counts[static_cast<size_t>(fate)]; }
@@ -200,7 +200,7 @@ TEST(WalkBatch, CountsAreAsSolved) {
   });
 }
 
-/// Of the shares that come out of the tissue and that go through.
+/// Returns estimates of the shares reflected by the tissue and transmitted.
 std::array<Estimate, 2> means(std::span<const BatchRay> rays) {
   std::array<Estimate, 2> e;
   for (const BatchRay& ray : rays) {

@@ -10,7 +10,7 @@
 namespace frond::leaf {
 namespace {
 
-/// As leaf_simplified takes them.
+/// Steps of leaf_simplified.
 constexpr double kStep = 0.1, kIndexStep_nm = 40;
 
 TEST(DepthAxis, FindsEveryDepth) {
@@ -77,7 +77,7 @@ Errors errors_of(const char* specimen, bool sieve, double least, double most, bo
   return errors;
 }
 
-/// As docs/file_formats.md states.
+/// The accuracy that docs/file_formats.md states.
 TEST(DepthTable, IsAsExactAsStated) {
   for (const char* specimen : {"soybean", "maize"}) {
     const bool sieve = specimen[0] == 'm';

@@ -265,7 +265,7 @@ TEST(Fit, ReportsTheSolvedWalk) {
   }
 }
 
-/// Of more than 450 rows not every one is solved.
+/// With more than 450 rows, some rows are interpolated and not solved.
 TEST(Fit, FitsSpectraOfManyWavelengthsAsThoseOfFew) {
   const TissueParams truth = another_of_prospect();
   FitRequest request{.measurements = spectra_of(truth, {8, 172}, 7), .structure = truth.structure, .sieve = true};
@@ -377,7 +377,7 @@ TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(error("nm,R\n550,.1\n", {.leaf = "oak"}), HasSubstr("has no names of leaves"));
   EXPECT_THAT(error("nm,R,side\n550,.1,middle\n"), HasSubstr("adaxial"));
   EXPECT_THAT(error("550 .1 .2 .3\n"), HasSubstr("4 columns"));
-  // What no spectrometer gives.
+  // Values that no spectrometer measures.
   EXPECT_THAT(error("nm,R\n500,.3\n510,-5\n520,.3\n"), AllOf(HasSubstr("a.csv:3:5"), HasSubstr("\"-5\"")));
   EXPECT_THAT(error("nm,R,T\n500,.3,.1\n510,.3,5\n520,.3,.1\n"), AllOf(HasSubstr("a.csv:3:8"), HasSubstr("\"5\"")));
   EXPECT_THAT(error("nm,R\n500,30\n510,120\n520,30\n"), AllOf(HasSubstr("a.csv:3:5"), HasSubstr("\"120\"")));
@@ -432,7 +432,7 @@ TEST(MeasuredSpectra, EachColumnHasItsUnit) {
               HasSubstr("R looks like percent and T like fractions: name the columns with their units"));
 }
 
-/// As frond spectrophotometer writes a material with parameters.
+/// A name as frond spectrophotometer writes a material with parameters.
 TEST(MeasuredSpectra, FieldsInQuotesCanHoldTheSeparator) {
   const MeasuredSpectra read =
       parse_measured_spectra("nm,R,material\n550,.1,\"leaf_solved,specimen=maize\"\n", "a.csv", {});
@@ -512,7 +512,7 @@ TEST(Fit, FindsTheAnthocyaninsAndBrownPigmentsOfAutumn) {
   EXPECT_NEAR(content(brown, "brownpigments"), 0.8, 0.15);
   EXPECT_LT(content(green, "anthocyanins") * kMicrogramsPerCm2.per_kg_per_m2, 1);
   EXPECT_LT(content(green, "brownpigments"), 0.04);
-  // What the leaf absorbs more or less than the green one, by band.
+  // Difference of the absorption from the green leaf's, by band.
   for (const Interval& nm : {Interval{500, 600}, Interval{600, 680}, Interval{680, 760}})
     for (const auto& [leaf, other] : {std::pair(1, &red), std::pair(2, &brown)}) {
       double truth = 0, fitted = 0;

@@ -139,7 +139,7 @@ TEST(LeafModes, AreTheWalksOwnF) {
   EXPECT_LT(std::abs(z_of_chi_square(chi_square, count)), z_limit(1));
 }
 
-/// Of pi f over a grid of angles and azimuths.
+/// Difference and maximum of pi f over a grid of angles and azimuths.
 struct Comparison {
   double difference = 0, largest = 0;
 };

@@ -53,7 +53,7 @@ class PlainWalk {
     return -std::log(1 - uniform()) * (tissue_.sieve_and_detour ? std::cos(cosine) : cosine) < depth;
   }
 
-  /// Of unpolarised light.
+  /// Reflectance for unpolarised light.
   static double fresnel(double n1, double n2, double cos_i) {
     const double sin_t = n1 / n2 * std::sqrt(std::max(0.0, 1 - cos_i * cos_i));
     if (sin_t >= 1) return 1;

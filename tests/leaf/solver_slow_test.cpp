@@ -45,8 +45,8 @@ double standard_error(double sum, double sum2, int64_t rays) {
   return std::sqrt((mean(sum2, rays) - m * m) / static_cast<double>(rays));
 }
 
-/// `batches` batches from number `first` on, each with rays of its own, which no other angle and leaf shares: their
-/// errors would go the same way.
+/// `batches` batches from number `first` on, each with its own rays, which no other angle and leaf shares: their errors
+/// would go the same way.
 Sums walk_many(const Tissue& tissue, double theta_deg, int64_t first, int64_t batches, const ThreadPool& pool) {
   const uint64_t key = hash_key(std::bit_cast<uint64_t>(theta_deg), std::bit_cast<uint64_t>(tissue.optical_depth[2]));
   const double theta = theta_deg * std::numbers::pi / 180;
@@ -64,7 +64,7 @@ Sums walk_many(const Tissue& tissue, double theta_deg, int64_t first, int64_t ba
   return all;
 }
 
-/// As many walks as it takes for both standard errors.
+/// Walks until both standard errors are reached.
 Sums walk_to_the_end(const Tissue& tissue, double theta_deg, const ThreadPool& pool) {
   constexpr int64_t kPilot = 16;
   Sums sums = walk_many(tissue, theta_deg, 0, kPilot, pool);

@@ -36,7 +36,7 @@ TEST(Specimens, TheConventionsSayWhatTheyAre) {
   EXPECT_NE(page.find(fmt::format("| `palisadeaspect` | | {} | – |\n", soybean.palisade_aspect)), std::string::npos);
 }
 
-/// Of R and T together at 8 degrees, over all that was measured.
+/// Root mean square error of R and T together at 8 degrees, over all measurements.
 double rmse(const Specimen& specimen, const std::vector<LeafMeasurement>& measurements) {
   const TissueModel model(specimen.params);
   double sum = 0;

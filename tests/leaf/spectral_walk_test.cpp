@@ -65,7 +65,7 @@ class Goniophotometer {
     ++rays_;
   }
   void add_absorbed() { ++rays_; }
-  /// As if every other ray had added 0 to it.
+  /// Estimate of a bin; every other ray counts as 0.
   Estimate bin(size_t i) const {
     Estimate e = bins_[i];
     e.add_zeros(rays_ - e.count());

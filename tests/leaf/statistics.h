@@ -28,7 +28,7 @@ class Estimate {
     sum_ += x;
     squares_ += x * x;
   }
-  /// As many zeros more.
+  /// Adds this number of zeros.
   void add_zeros(int count) { n_ += count; }
   int count() const { return n_; }
   double mean() const { return sum_ / n_; }

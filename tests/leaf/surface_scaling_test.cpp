@@ -21,7 +21,7 @@ double arriving(const SurfaceScaling& scaling, double exponent, double cosine, d
   return static_cast<double>(scaling.at(place, static_cast<float>(cosine), Float4{n, n, n, n})[0]);
 }
 
-/// What the scaled lobe gives back of light from one direction, by a quadrature finer than its own.
+/// Returns the share of light from one direction that the scaled lobe reflects, by a quadrature finer than its own.
 double reflected(const SurfaceScaling& scaling, double exponent, double cosine, double index) {
   static const std::vector<QuadratureNode> rule = gauss_legendre(400);
   const AzimuthModes azimuth(exponent);

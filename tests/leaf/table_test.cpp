@@ -43,8 +43,8 @@ TEST(Solver, GivesTheCheckFigures) {
   }
 }
 
-/// Of the program of the model's authors: soybean from above at 8 degrees, a million rays, absorption by Beer's law.
-/// Standard errors are 0.0005 at most.
+/// Figures of the program of the model's authors: soybean from above at 8 degrees, a million rays, absorption by Beer's
+/// law. Standard errors are 0.0005 at most.
 TEST(Solver, MeetsTheAuthorsFigures) {
   struct {
     double lambda_nm, r, t;
@@ -311,7 +311,7 @@ TEST(TableLookup, IsRightBetweenDegreesAndAtGrazing) {
   }
 }
 
-/// Of shares that are looked up.
+/// Error of shares that are looked up.
 struct LookupError {
   double largest = 0, squares = 0;
   int count = 0;

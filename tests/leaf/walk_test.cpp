@@ -217,7 +217,7 @@ Vec3d uniform_direction(RandomStream& rng) {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// What the walk sends into each cell against the integral of f |cos| over it.
+/// Compares the light that the walk scatters into each cell with the integral of f |cos| over it.
 void expect_f_to_match_walks(const Tissue& tissue, double theta_deg, Absorption absorption, double limit) {
   constexpr int kRays = 100000;
   std::array<Estimate, Cells::kCount> walked, integrated;

@@ -137,7 +137,7 @@ double over_the_sphere(const Value& value) {
   return sum * 4 * kPiD / (double(kSteps) * kSteps);
 }
 
-/// As an image of the sphere has it: 1 on average, and different everywhere.
+/// Values of an image of the sphere: 1 on average, and different everywhere.
 float ramp(const Vec3& w) { return 1 + 0.5f * w.x + 0.3f * w.y - 0.2f * w.z; }
 
 void write_ramp(const std::string& name, int size) {

@@ -94,7 +94,7 @@ class ManPages(Folder):
 
 
 class Completion(Folder):
-    """What each shell offers for a line; its last word is the one that is being written."""
+    """Completions of each shell for a line, whose last word is incomplete."""
 
     shell = "bash"
 

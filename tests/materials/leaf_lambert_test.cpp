@@ -18,7 +18,7 @@ using testing::number;
 
 constexpr Vec3 kUp{0, 0, 1}, kDown{0, 0, -1};
 
-/// What light from `theta_deg` leaves as, all that is reflected together.
+/// Shares of the light from `theta_deg`: all reflected light together, and transmitted light.
 struct Pair {
   double reflected = 0, transmitted = 0;
 };

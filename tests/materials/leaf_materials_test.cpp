@@ -86,7 +86,7 @@ TEST(LeafParams, KnowsWhatTexturesVary) {
   EXPECT_NE(leaf({texture("spongyaspect", {"1:2"})}).spongy_aspect(), nullptr);
 }
 
-/// Of light from above, averaged where the model draws lots.
+/// Returns f for light from above, averaged if the model is stochastic.
 SampledSpectrum mean_f(Ready& ready) {
   const Bsdf& bsdf = ready.bsdf({0.5f, 0.5f});
   SampledSpectrum sum;
@@ -190,7 +190,7 @@ std::array<Estimate, 2> scattered(Ready& leaf, const Vec3& incident) {
   return all_and_surface;
 }
 
-/// Of look-ups in tables: measured with the tables.
+/// Error of look-ups in tables, as measured with the tables.
 constexpr double kLookupError = 1e-4;
 
 TEST(LeafSimplified, AlbedoIsThatOfItsTable) {
@@ -414,7 +414,7 @@ TEST(LeafSimplified, FromLightIsTheLeafTheOtherWayRound) {
   }
 }
 
-/// Whichever way light goes, an instrument that sends it in at one angle gets the table's shares back.
+/// For each incident direction, an instrument that illuminates the leaf at one angle measures the table's shares.
 TEST(LeafSimplified, IsTheSameLeafToInstrumentsWhateverIsIncident) {
   const Vec3 incident = normalize(Vec3{1, 0, -0.4f});
   for (const bool surface_direct : {true, false}) {

@@ -68,7 +68,7 @@ class Ready {
   const Material& material() const { return *material_; }
   const SampledWavelengths& lambda() const { return lambda_; }
   void sample_wavelengths(float u) { lambda_ = strategy_->sample(u); }
-  /// As if those before `first` carried no light any more.
+  /// Deactivates the lanes before `first`, as if they carried no light.
   void retire_lanes(int first) {
     for (int lane = 0; lane < first; ++lane) lambda_.active[static_cast<size_t>(lane)] = false;
   }

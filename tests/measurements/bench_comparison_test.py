@@ -1,4 +1,4 @@
-"""What is called slower, faster or another image, and how often wrongly."""
+"""Verdicts of comparisons (slower, faster, another image) and their rates of error."""
 
 import math
 import unittest
@@ -13,7 +13,7 @@ ONE_IN_A_MILLION = 1e-6
 
 
 def binomial_bounds(trials, rate):
-    """What a count stays within but with a probability of 1e-6 on either side. (1 - rate)^trials must be a number."""
+    """Bounds of a binomial count, each exceeded with a probability of 1e-6. (1 - rate)^trials must be a number."""
     chance, below, low, high = (1 - rate) ** trials, 0.0, None, trials
     for k in range(trials + 1):
         below += chance

@@ -1,6 +1,6 @@
-# What the target frond alone has made can be installed, as README.md says of scripts/demo: the program with its man pages,
-# and what other programs are compiled with. --component runtime leaves out the latter, as docs/extending.md says.
-# A build folder of its own, whose object files are copied from BUILD_DIR and not compiled again.
+# A build of the target frond alone can be installed, as README.md states for scripts/demo: the program with its man
+# pages, and the files for compiling other programs. --component runtime leaves out the latter, as docs/extending.md
+# says. A build folder of its own, whose object files are copied from BUILD_DIR and not compiled again.
 file(REMOVE_RECURSE "${WORK_DIR}")
 set(build "${WORK_DIR}/build")
 set(prefix "${WORK_DIR}/prefix")

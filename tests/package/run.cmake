@@ -61,7 +61,7 @@ if(NOT result EQUAL 1 OR NOT message MATCHES "libfrond_image.so.*there is no suc
   message(FATAL_ERROR "without libfrond_image.so: ${result}\n${message}")
 endif()
 
-# A limit on the size of files is told, and no half-written file is left.
+# A limit on the size of files is reported, and no incomplete file is left.
 execute_process(COMMAND sh -c "ulimit -f 1; exec \"$0\" \"$@\"" "${frond}" render ${plugin} "${example}/soil.pbrt"
                         -o "${WORK_DIR}/limited.exr" --quick
                 RESULT_VARIABLE result ERROR_VARIABLE message)

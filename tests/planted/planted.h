@@ -119,8 +119,8 @@ class GoodCoatedDiffuse final : public Honest {
   SampledSpectrum mirror_;
 };
 
-/// As the random walks of leaves: f is noisy, a sample lives in one lane drawn by lot, or is absorbed; the density is
-/// that of something else.
+/// Like the random walks of leaves: f is noisy, a sample is in one random lane or absorbed, and the density is
+/// approximate.
 class GoodStochastic : public Honest {
  public:
   explicit GoodStochastic(const SampledWavelengths& lambda) : Honest(lambda, 0.4f, 0.3f), lambda_(lambda) {}

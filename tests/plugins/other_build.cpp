@@ -1,6 +1,6 @@
 #include "core/plugin_module.h"
 
-/// As if compiled against the headers of another frond: a plug-in. `core/math/vec.h` is another one there.
+/// A plug-in that seems to be compiled with the headers of another frond, in which `core/math/vec.h` differs.
 namespace {
 [[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/math/vec.h 0123456789abcdef";
 }

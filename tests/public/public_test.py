@@ -118,7 +118,7 @@ class Case:
 
 
 def lacks(case):
-    """What the machine or the build lacks for this case; None if nothing."""
+    """Returns the requirement of this case that the machine or the build lacks; None if there is none."""
     for need in case.record.get("needs", []):
         if need == "assimp" and not (FROND.parent / "frond-assimp").exists():
             return "frond-assimp is not built"

@@ -31,7 +31,7 @@ def exr_header(data):
 
 
 def unzipped(raw):
-    """What OpenEXR does before zlib, undone: differences of neighbours, and even bytes before odd ones."""
+    """Inverse of OpenEXR's transformation before zlib: differences of neighbours, and even bytes before odd ones."""
     data = bytearray(zlib.decompress(raw))
     for i in range(1, len(data)):
         data[i] = (data[i - 1] + data[i] - 128) & 255

@@ -110,7 +110,7 @@ TEST_F(Adaptive, NoiseIsThatOfImagesOrMore) {
     }
 }
 
-/// As after a time limit, or in a render with a fixed number of samples.
+/// The state after a time limit, or of a render with a fixed number of samples.
 TEST_F(Adaptive, WithoutASecondHalfVarianceIsThatBetweenSamples) {
   for (const char* filter : {"gaussian", "box"}) {
     const LoadedScene scene = load(true, 1, filter);
@@ -191,7 +191,7 @@ TEST_F(Adaptive, AllNoiseTestsTogetherHaveTheirConfidence) {
   EXPECT_NEAR(noise_z(4), 2.80703, 1e-4);  // 0.0025
 }
 
-/// New halves without samples would tell nothing.
+/// New halves without samples would contain no information.
 TEST_F(Adaptive, AfterTheDeadlineHalvesRemain) {
   const LoadedScene scene = load(true);
   RenderPart part = in_halves(scene, 64);
@@ -243,8 +243,8 @@ TEST_F(Adaptive, PlainRendersStoppedAndResumedAreTheSameToo) {
   }
 }
 
-/// Whatever the pieces were about to have, the whole of them goes on. The second cut divides a tile, whose pixels get
-/// equal numbers again.
+/// The merged part continues as a whole, independent of the plans of its parts. The second cut divides a tile, whose
+/// pixels get equal numbers again.
 TEST_F(Adaptive, MergedPiecesGoOn) {
   for (const int x : {16, 10}) {
     std::vector<std::filesystem::path> files;

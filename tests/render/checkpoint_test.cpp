@@ -104,7 +104,7 @@ TEST_F(Checkpoints, ComeByTheClockAndWarnWhereTheyCannotBeWritten) {
   EXPECT_EQ(read_part(path_).film, part.film);
 }
 
-/// Each of them has whole work items, and says no more of itself than it has.
+/// Each checkpoint contains whole work items, and its header states no more than these.
 TEST_F(Checkpoints, OfARenderAtWorkCanBeGoneOnFrom) {
   const LoadedScene scene = SceneRender{}.load(session_, scene_);
   constexpr SampleRange kSamples{0, 256};
@@ -133,7 +133,8 @@ TEST_F(Checkpoints, OfARenderAtWorkCanBeGoneOnFrom) {
   }
 }
 
-/// A checkpoint is of one plan: with samples of the next, what the next is to be would be decided anew, and otherwise.
+/// A checkpoint contains samples of one plan only: with samples of the next plan, the next plan would be computed again
+/// with another result.
 TEST_F(Checkpoints, OfAnAdaptiveRenderAreOfOnePlan) {
   // The sky, which needs little, comes first: what needs more has it before the checkpoint gets there.
   scene_ = folder_.write("tall.pbrt", testing::a_scene("", 40, 600));

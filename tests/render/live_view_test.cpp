@@ -34,7 +34,7 @@ class KeptLog final : public Log {
   mutable std::mutex mutex_;
 };
 
-/// Keeps what it is shown, and fails where it is told to.
+/// Records the images that it receives, and fails on request.
 class TestViewer final : public Viewer {
  public:
   explicit TestViewer(size_t most = SIZE_MAX) : most_(most) {}
@@ -49,7 +49,7 @@ class TestViewer final : public Viewer {
   size_t most_;
 };
 
-/// Waits until it is told that nobody waits for it.
+/// Blocks until it is stopped.
 class StuckViewer final : public Viewer {
  public:
   void show(const Image&) override {
@@ -135,7 +135,8 @@ TEST_F(LiveViews, ChangeNothingInTheFilm) {
   EXPECT_EQ(watched.film, alone.film);
 }
 
-/// Whatever there is while others add to the film: where all samples are alike, no pixel is ever half of an item.
+/// A view shows whole items only, while other threads add to the film: all samples are equal, so that a partial item
+/// would show as another value.
 TEST_F(LiveViews, SeeWholeItemsOnly) {
   const auto scene_file = folder_.write("sky.pbrt", R"(
 Camera "orthographic"
@@ -213,7 +214,7 @@ TEST_F(LiveViews, GoToTevAsItIsSpokenTo) {
   EXPECT_THAT(log_.warnings, IsEmpty());
 }
 
-/// What the viewer has already is not sent again until the end, when all of it is.
+/// Only changed rows are sent, except for the whole image at the end.
 TEST_F(LiveViews, SendTevWhatHasChanged) {
   TevListener listener;
   Image image(3, 2 * Film::kTile, {"R", "G", "B"});

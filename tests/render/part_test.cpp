@@ -51,7 +51,7 @@ class Parts : public ::testing::Test {
     ImageOutput(path("image.exr").string(), {}).write(part.film, finished_image(part));
     return bytes_of(path("image.exr"));
   }
-  /// What merging two parts is refused with.
+  /// Error of merging two parts.
   std::string refusal(const RenderPart& a, const RenderPart& b) const {
     const auto files = {write(a, "a.part"), write(b, "b.part")};
     return error_of([&] { merge_parts(files); });
@@ -159,7 +159,7 @@ TEST_F(Parts, WhatIsThereTwiceIsRefused) {
   SceneRender left{.pixels = Crop{0, 0, 20, 27}}, right{.pixels = Crop{19, 3, 40, 27}};
   EXPECT_THAT(refusal(part({0, 4}, left), part({0, 4}, right)),
               AllOf(HasSubstr("a.part"), HasSubstr("b.part"), HasSubstr("of pixels 19,20,3,16")));
-  // Which two of several it is, is told.
+  // The error names the two parts.
   const auto files = {write(part({0, 2}), "0.part"), write(part({4, 6}), "1.part"), write(part({2, 4}), "2.part"),
                       write(part({5, 7}), "3.part")};
   EXPECT_THAT(error_of([&] { merge_parts(files); }), AllOf(HasSubstr("1.part"), HasSubstr("3.part"), HasSubstr("5:6")));
@@ -211,7 +211,7 @@ TEST_F(Parts, OfChangedFilesAreRefusedByTheirNames) {
   EXPECT_THAT(refusal(first, part({2, 4})), AnyOf(HasSubstr("resolution: 40 x 27 in"), HasSubstr("scene: ")));
 }
 
-/// What a reading of these bytes says; what is read without complaint has to be `original`.
+/// Error of reading these bytes. A part that is read without an error must equal `original`.
 std::string complaint(const std::vector<unsigned char>& bytes, const RenderPart& original) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::string said = error_of([&] {

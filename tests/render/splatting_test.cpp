@@ -203,7 +203,7 @@ TEST(Splatting, TilesOfManySamplesDoNotDrawPixelsToThem) {
   }
 }
 
-/// How much pixels differ between films of independent samples, and what was said of that: sums over a film's pixels.
+/// Actual and stated variance of pixels of films with independent samples: sums over a film's pixels.
 struct Trials {
   double mean = 0, actual = 0, stated = 0;
   double ratio() const { return stated / actual; }
@@ -254,7 +254,7 @@ Trials trials(const Filter& filter, size_t bands, uint64_t first, uint64_t sampl
 
 double flat(int, double) { return 2; }
 double steps(int x, double) { return x < 3 ? 0 : 4; }
-/// Structure within pixels, which samples that are told apart by their pixels alone do not show.
+/// Structure within pixels, which the means of pixels alone do not show.
 double edge(int x, double u) { return x + u < 2.4 ? 0 : 4; }
 
 TEST(Splatting, VarianceIsThatOfIndependentSamples) {
@@ -382,7 +382,7 @@ TEST_F(SplattingRenders, ACropHasThePixelsOfTheWhole) {
   }
 }
 
-/// Of pixels that the scene itself asks for.
+/// The scene itself has a crop.
 TEST_F(SplattingRenders, PiecesOfAScenesCropAddUpToIt) {
   std::string text = a_scene();
   text.replace(text.find("Film \"rgb\""), 10, "Film \"rgb\" \"integer pixelbounds\" [3 33 5 25]");
@@ -401,7 +401,7 @@ TEST_F(SplattingRenders, PiecesOfAScenesCropAddUpToIt) {
   EXPECT_TRUE(lacks_neighbors(merge_parts({files[1], files[2]}).film));
 }
 
-/// The two ways blur alike: their images have the same mean, and hardly differ but by noise.
+/// Both reconstructions have the same blur: their images have the same mean, and differ by little more than noise.
 TEST_F(SplattingRenders, BothWaysMakeOneImage) {
   for (const char* filter : {"gaussian", "mitchell"}) {
     const auto image = [&](const std::string& more, uint64_t seed) {

@@ -59,7 +59,7 @@ TEST(Work, WhatIsMissingIsNamed) {
   EXPECT_TRUE(coverage.missing(box(2, 2, 0, 4, 0, 99)).empty());
 }
 
-/// Every cell of a small volume of pixels and samples, told one by one.
+/// Set of cells of a small volume of pixels and samples.
 class Cells {
  public:
   static constexpr int kSide = 7;
@@ -77,7 +77,7 @@ class Cells {
   void add(const WorkItem& item) {
     any_of(item, [this](size_t y, size_t x, size_t s) { return ++count_[y][x][s] < 0; });
   }
-  /// What of `item` is not here.
+  /// Returns the cells of `item` that are not in this set.
   Cells rest_of(const WorkItem& item) const {
     Cells rest;
     any_of(item, [&](size_t y, size_t x, size_t s) { return (rest.count_[y][x][s] = count_[y][x][s] == 0) < 0; });

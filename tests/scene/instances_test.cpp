@@ -309,7 +309,7 @@ Rotate 30 0 0 1 Shape "instances" "string object" "shoot" "string filename" "pla
   EXPECT_EQ(instances->geometry().instances(), 4u);
 }
 
-// Meshes of few triangles beside instances are scenes of their own within Embree's; those of many are not.
+// Small meshes beside instances become separate Embree scenes; large meshes do not.
 TEST_F(Instances, SmallMeshesBesideThemAreMetAsLargeOnesAre) {
   const std::string world = "ObjectBegin \"leaf\" " + leaf_shapes() + R"(ObjectEnd
 Shape "trianglemesh" "point3 P" [-4 -4 -1  4 -4 -1  4 4 -1  -4 4 -1] "integer indices" [0 1 2  0 2 3]
@@ -337,7 +337,7 @@ AttributeBegin Translate 2 0 0 Rotate 40 1 2 3 ObjectInstance "leaf" AttributeEn
   expect_same_in_packets(*large);
 }
 
-/// Which instance stands at each place of a row along x, as seen from above.
+/// Returns the number of the instance at each position of a row along x, as seen from above.
 std::vector<uint64_t> ids_seen(const Scene& scene, int count) {
   std::vector<uint64_t> ids;
   for (int i = 0; i < count; ++i) {

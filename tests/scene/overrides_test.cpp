@@ -1,4 +1,4 @@
-// What a user says over a scene file is written into its description, once.
+// Overrides are written into the description of the scene, once.
 
 #include "scene/overrides.h"
 
@@ -40,7 +40,7 @@ std::string text_of(const std::vector<ParsedParam>& params) {
   return text;
 }
 
-/// What overrides may edit, part by part.
+/// Parts of the description that overrides may edit, as text.
 std::map<std::string, std::string> parts_of(const SceneDescription& d) {
   std::map<std::string, std::string> parts{{"integrator", d.integrator.name + text_of(d.integrator.params)},
                                            {"filter", d.filter.name + text_of(d.filter.params)},

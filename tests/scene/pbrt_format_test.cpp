@@ -1,4 +1,4 @@
-// What pbrt-v4 accepts: imports, compressed files, transforms that cannot be inverted, names of its plugins.
+// Features of pbrt-v4's format: imports, compressed files, transforms that cannot be inverted, names of its plugins.
 #include <gmock/gmock.h>
 #include <zlib.h>
 
@@ -267,7 +267,7 @@ TEST(PbrtFormat, ActiveTransformMovesShapesAndInstances) {
 
 TEST(PbrtFormat, OptionsMayStandInTheWorld) { EXPECT_EQ(parse_world("Option \"integer seed\" 3").options.size(), 1u); }
 
-/// What becomes of a scene's plugins, and what is said.
+/// A scene after the replacement of pbrt's plug-ins, and its messages.
 struct Answer {
   SceneDescription scene;
   Problems problems;

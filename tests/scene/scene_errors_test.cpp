@@ -1,4 +1,4 @@
-// What is wrong in a scene that can be parsed: all of it is told, and nothing that only follows.
+// Errors of a scene that can be parsed: all of them are reported, without errors that only follow from others.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

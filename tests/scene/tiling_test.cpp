@@ -26,7 +26,7 @@ std::unique_ptr<Scene> scene(const std::string& options, const std::string& worl
   return std::make_unique<Scene>(description, registry, pool, silent_log());
 }
 
-/// What stands in the scene reaches beyond a period, in both directions.
+/// Objects that extend beyond a period, in both directions.
 const std::string kObject = R"(
 ObjectBegin "plot" Shape "disk" "float radius" .7
 Translate 1.2 .4 .5 Rotate 70 1 2 0 Shape "disk" "float radius" .9

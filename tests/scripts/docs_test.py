@@ -1,4 +1,4 @@
-"""What scripts/docs checks, as far as it goes without MkDocs: pages are in the navigation, links lead to files. README.md and
+"""Checks of scripts/docs that do not need MkDocs: pages are in the navigation, links lead to files. README.md and
 joss/paper.md have the figures of the measured pages."""
 
 import pathlib

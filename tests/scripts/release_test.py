@@ -1,4 +1,4 @@
-"""What a release changes by hand says the same everywhere."""
+"""Versions and dates that a release changes by hand are equal everywhere."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""Where tests run scripts: a folder with copies of them and made-up tools."""
+"""Folder in which tests run scripts: a folder with copies of them and made-up tools."""
 
 import pathlib
 import shutil

@@ -299,7 +299,7 @@ TEST(Ply, AFileWithAnyByteChangedIsReadOrRefused) {
     }
 }
 
-/// As MeshLab writes: texture coordinates of the corners of faces, colours of vertices, edges.
+/// A file as MeshLab writes it: texture coordinates of the corners of faces, colours of vertices, edges.
 TEST(Ply, WhatIsNotUsedIsNamedWithItsCount) {
   const PlyMesh mesh = read(R"(ply
 format ascii 1.0

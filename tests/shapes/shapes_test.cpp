@@ -173,8 +173,8 @@ TEST_F(Shapes, ASphereGivesWhatItsDistanceSays) {
   EXPECT_NEAR(e.met, expected, 0.005 * expected);
 }
 
-/// What leaves the surface that is met straight above the origin's plane, downwards, over that of the same spectrum
-/// without a power.
+/// Radiance emitted downwards by the surface vertically above `below`, relative to a light with the same spectrum and
+/// without a stated power.
 double relative_radiance(const Scene& scene, const Vec3& below) {
   SampledWavelengths lambda;
   lambda.count = 1, lambda.nm[0] = 550, lambda.pdf[0] = 1, lambda.active[0] = true;

@@ -186,7 +186,7 @@ double midpoint_mean(const std::vector<ResponsePoint>& response, const Function&
   return weighted / area;
 }
 
-/// As sensors' tables often are: over their whole range, and 0 for most of it.
+/// Tables of sensors often cover a wide range and are 0 in most of it.
 TEST_F(Responses, ArePaddedWithAnyNumberOfZeros) {
   std::string box;  // 5 nm at steps of 1
   for (int nm = 400; nm <= 1000; ++nm) box += fmt::format("{} {}\n", nm, nm >= 701 && nm <= 704 ? 1 : 0);
@@ -236,7 +236,7 @@ TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
   constexpr int kSamples = 20000;
   std::vector<double> sum(5), count(5);
   for (int i = 0; i < kSamples; ++i) {
-    // Golden steps, so that what comes in turn and u have nothing to do with each other.
+    // Golden steps, so that the index of the sample and u are independent.
     const float u = static_cast<float>(std::fmod(i * 0.6180339887498949, 1));
     const SampledWavelengths lambda = bands->sample_for_index(uint64_t(i), u);
     const SensorResponse r = bands->sensor(light->sample(lambda), lambda);
@@ -257,7 +257,7 @@ TEST_F(Responses, ThatAreNothingAreRefused) {
   EXPECT_THAT(error_of([&] { make({(folder_ / "none.spd").string()}); }), HasSubstr("cannot read spectrum file"));
 }
 
-/// Of one mean wavelength, and neither in the order of the alphabet nor of the wavelengths.
+/// Bands with equal mean wavelengths, neither in alphabetical order nor in the order of wavelengths.
 TEST_F(Responses, HaveTheNamesOfTheirFilesAndKeepTheirOrder) {
   const std::vector<std::string> files{write("par.spd", "400 1 700 1"), write("green.spd", "540 1 560 1"),
                                        write("blue.spd", "450 1 460 1")};

@@ -27,7 +27,7 @@ Triple response(const WavelengthStrategy& meyer, int lane) {
   return kOpponent * meyer.sensor(unit, lambda).color();
 }
 
-// As they are quoted from the paper, whose weights are per 101 nm. Its sums were coarser than these integrals: by steps
+// Numbers as quoted from the paper, whose weights are per 101 nm. Its sums were coarser than these integrals: by steps
 // of 5 nm the points are 490.87 and 631.45 nm.
 TEST(Meyer, FindsThePublishedWavelengthsAndWeights) {
   const auto meyer = make_meyer("published");

@@ -9,7 +9,7 @@
 namespace frond {
 namespace {
 
-/// What D65 shows of a reflectance, in linear sRGB.
+/// Returns the colour of a reflectance under D65, in linear sRGB.
 Triple shown(const SigmoidPolynomial& s) {
   Triple xyz{}, white{};
   for (int nm = 360; nm <= 830; ++nm)

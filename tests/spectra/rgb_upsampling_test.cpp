@@ -50,7 +50,7 @@ const Location kHere{std::make_shared<const std::string>("a.pbrt"), 4, 2};
 
 void must_exist(const std::string& message) { ADD_FAILURE() << message; }
 
-/// What a render measures of a surface under D65, in the film's linear RGB, against what the scene asked for.
+/// Compares the colour of a surface under D65, in the film's linear RGB, with the scene's colour.
 void expect_round_trip(const char* name) {
   const ColorSpace& space = *find_color_space(name);
   const Triple nominal_white = kD65White.xyz(), table_white = to_xyz(*unit_d65());

@@ -1,4 +1,4 @@
-"""Which shared libraries the program loads for what it does: OpenImageIO's, some 250, for images of 8 bits and for reading."""
+"""Shared libraries that the program loads, by operation: OpenImageIO's, some 250, for images of 8 bits and for reading."""
 
 import os
 import pathlib
@@ -14,7 +14,7 @@ SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
 
 class StartupTest(FrondTest):
     def traced(self, *words):
-        """What the loader says of all that it loads, at the start and later. It writes that to a file for each process."""
+        """The loader's report of all libraries that it loads, at the start and later. It writes that to a file for each process."""
         log = self.folder / "loader"
         environment = dict(os.environ, LD_DEBUG="files", LD_DEBUG_OUTPUT=str(log))
         process = self.start([FROND, *map(str, words)], environment)

@@ -109,7 +109,7 @@ MEASUREMENTS = {
 
 class Stops(FrondTest):
     def commands(self):
-        """What would run for hours, by name."""
+        """Commands that would run for hours, by name."""
         for name, text in RENDERS.items():
             path = self.write(name.replace(" ", "_") + ".pbrt", text)
             yield name, ["render", str(path), "-o", str(self.folder / "image.exr")]

@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 
 /// Two open_choices of three options each, the last of which is the reference. The first open_choice's options are off
-/// by `far`, the second's by `near` (of each: the cheapest, the middle one), everywhere alike.
+/// by `far`, the second's by `near` (of each: the cheapest, the middle one), in all pixels.
 Screening screening(std::array<double, 2> far, std::array<double, 2> near, double cheap_noise = 1) {
   const std::vector<double> bias{far[0], far[1], near[0], near[1]};
   std::vector<std::vector<double>> products(4);

@@ -185,7 +185,7 @@ TEST_F(Choosing, BothErrorsCanBeStated) {
   EXPECT_EQ(choice_of(render(two_leaves(both, both), kPilot))["leaves"][0]["chosen"], "leaf_solved");
 }
 
-/// What is chosen for two leaves.
+/// Returns the models selected for two leaves.
 Choice chosen_from(const Ladder& ladder, Session& session, SceneDescription description) {
   return choose_models({.session = session, .description = description, .samples = 64, .is_question = true}, ladder,
                        silent_log())
@@ -209,7 +209,7 @@ TEST_F(Choosing, TheDeadlineEndsAPilot) {
   EXPECT_THAT(choice_text(chosen->choice), HasSubstr("the time limit ended the pilot"));
 }
 
-/// Whatever the pilot does at that moment: it makes tables, or renders.
+/// The deadline may come while the pilot makes tables or while it renders.
 TEST_F(Choosing, TheDeadlineEndsAPilotAtAnyMoment) {
   const std::filesystem::path scene = folder_.write("scene.pbrt", kSmpte + two_leaves("\"float maxrms\" 1e-6", ""));
   int out_of_time = 0;

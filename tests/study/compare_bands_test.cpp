@@ -133,7 +133,7 @@ TEST_F(CompareBands, AreMeasuredOneByOneAndTogether) {
               AllOf(HasSubstr("Bias band by band"), HasSubstr("680 nm as green"), Not(HasSubstr("{{"))));
 }
 
-/// What no path has carried has no error that could be told.
+/// A band that no path has carried yet has no error estimate.
 TEST_F(CompareBands, AreMeasuredOnceAllOfThemAreSeen) {
   const std::string nine = "bands,wavelengths=400,450,500,550,600,650,700,750,800";
   ASSERT_EQ(compare({"--wavelengths", nine}).code, 0);

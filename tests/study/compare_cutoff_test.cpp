@@ -9,7 +9,7 @@
 namespace frond::compare {
 namespace {
 
-/// Of 100 paths 60 go on after one event, 30 after two; none after three.
+/// 100 paths, of which 60 continue after one event, 30 after two and none after three.
 PathEnds some_ends() {
   PathEnds ends;
   ends.escaped[0] = 25, ends.absorbed[0] = 15, ends.escaped[1] = 30, ends.absorbed[2] = 30;

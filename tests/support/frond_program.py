@@ -25,13 +25,13 @@ Shape "trianglemesh" "point3 P" [-2 -.5 -2  2 -.5 -2  2 -.5 2  -2 -.5 2] "intege
 Material "diffusetransmission" "rgb reflectance" [.2 .5 .1]
 Shape "sphere" "float radius" .5
 """
-# Whose samples are taken: those around the image reach into it.
+# Pixels that have samples, including pixels around the image whose filter reaches into it.
 PIXELS = 50 * 34
 THREADS = 2
 
 
 def part_header(path):
-    """What a part says before its sums (docs/many_machines.md)."""
+    """Header of a part, before its sums (docs/many_machines.md)."""
     data = pathlib.Path(path).read_bytes()
     magic = b"frond part 4\n"
     assert data.startswith(magic), f"{path} is no part"

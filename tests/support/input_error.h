@@ -11,7 +11,7 @@
 
 namespace frond {
 
-/// What `act` says is wrong, or "" when it finds nothing wrong. Any other exception gets through.
+/// Returns the message of the InputError that `act` throws; "" if it throws none. Other exceptions pass through.
 template <class Act>
 std::string error_of(const Act& act) {
   try {

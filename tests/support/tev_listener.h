@@ -37,7 +37,7 @@ class Port {
   uint16_t number() const { return number_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(number_); }
   void listen() const { EXPECT_EQ(::listen(socket_, 4), 0); }
-  /// So that the system keeps little of what is not read.
+  /// Reduces the system's buffer of unread data.
   void take_little() const {
     const int bytes = 4096;
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
@@ -55,8 +55,8 @@ class Port {
   uint16_t number_ = 0;
 };
 
-/// A viewer that speaks tev's protocol, on a thread of its own. Reads packets as tev's Ipc.h has them, and notes all
-/// that is wrong with them.
+/// A viewer that speaks tev's protocol, in a separate thread. Reads packets in the format of tev's Ipc.h and records
+/// their errors.
 class TevListener {
  public:
   enum class Manner { reads, closes_early, never_reads };

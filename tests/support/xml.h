@@ -6,8 +6,8 @@
 
 namespace frond::testing {
 
-/// What is wrong with the nesting, the entities or the attributes of an XML text without comments and declarations; ""
-/// where it is well-formed.
+/// Returns the first error in the nesting, the entities or the attributes of an XML text without comments and
+/// declarations; "" if it is well-formed.
 inline std::string xml_error(std::string_view xml) {
   std::vector<std::string> open;
   size_t at = 0;

@@ -28,7 +28,7 @@ TEST(AtomicFile, TakesThePlaceOfTheOldOne) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.name_of("")), {}), 1);
 }
 
-// Containers that share a folder number their processes alike.
+// Processes of different containers that share a folder can have equal process ids.
 TEST(AtomicFile, LeavesAloneWhatAnotherProcessOfTheSameNumberIsWriting) {
   const TestFolder folder("atomic_file");
   const std::string others = fmt::format(".frond-{}-0.tmp", ::getpid());

@@ -9,7 +9,7 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-/// As the linker leaves it: entries with zeros between them.
+/// The section as the linker writes it: entries with zeros between them.
 std::string problem_of(const std::string& section) {
   return build_mismatch({.headers = section.data(), .headers_end = section.data() + section.size()});
 }

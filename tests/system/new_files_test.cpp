@@ -79,7 +79,7 @@ TEST_F(NewFilesTest, LeaveNothingWithoutFinish) {
   EXPECT_TRUE(fs::is_empty(path("")));
 }
 
-/// Whatever the place of the file that cannot be written, in a folder that has files of the same names.
+/// One file cannot be written, at several positions of the list, in a folder that has files of the same names.
 TEST_F(NewFilesTest, LeaveWhatWasThereIfOneFileHasNoPlace) {
   for (const std::string bad : {"scene.xml", "files/leaf.ply", "files"}) {
     const TestFolder folder("new_files_bad");

@@ -31,7 +31,7 @@ TextureMapping mapping_of(std::vector<ParsedParam> params, const Transform& worl
 
 ParsedParam kind(const char* mapping) { return {"string", "mapping", {}, {}, std::vector<std::string>{mapping}}; }
 
-/// The footprint's changes are those of the place from one point to the next.
+/// The footprint's derivatives equal the differences of the coordinates from one point to the next.
 void expect_changes_follow(const TextureMapping& mapping, const Vec3& p) {
   constexpr float kStep = 1e-3f;
   const Vec3 dx{kStep, 0, 0}, dy{0, kStep, -kStep};
@@ -143,7 +143,7 @@ TEST(MipMap, IsBlackBeyondABlackEdgeAndWhereThereIsNoPlace) {
   }
 }
 
-/// Of files alone.
+/// Resolver of file names only.
 class FileLookup final : public ParamResolver {
  public:
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
@@ -182,7 +182,7 @@ TEST(ImageTexture, OneFileIsReadOnceForTexturesThatLookItUpAlike) {
   EXPECT_THROW(make(nullptr, "repeat", 1), InputError);
 }
 
-/// Of an image's colour at 440, 545 and 620 nm.
+/// Returns an image's reflectance at 440, 545 and 620 nm.
 SampledSpectrum colors_of(const std::string& path) {
   FileLookup files;
   const Params params(image_spectrum_texture,
