@@ -60,7 +60,7 @@ Vec3 MediumBox::local_to_unit(const Vec3& local) const {
 /// The three pairs of planes, as in Kay and Kajiya 1986.
 bool MediumBox::clip(const Ray& ray, float& begin, float& end, Ray& in_box) const {
   const Vec3 d = medium_from_world_.vector(ray.d), size = bounds_.max - bounds_.min;
-  in_box = {unit(ray.o), {d.x / size.x, d.y / size.y, d.z / size.z}, ray.t_max};
+  in_box = {world_to_unit(ray.o), {d.x / size.x, d.y / size.y, d.z / size.z}, ray.t_max};
   begin = 0, end = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const float o = in_box.o[axis], along = in_box.d[axis];
