@@ -366,7 +366,7 @@ std::set<std::string> lines_with(const std::set<std::string>& names, const std::
   return found;
 }
 
-/// A constituent is a row of the table in leaf/tissue: what else names one would lack the next one. core/units knows by
+/// A constituent is a row of the table in leaf/tissue: code that names one would miss the next one. core/units knows by
 /// PhysicalQuantity in which other units the literature gives a quantity.
 TEST(Architecture, ConstituentsAreNamedInTheirTableAlone) {
   std::set<std::string> names{"chlorophyll", "carotenoid", "anthocyanin", "brownpigment"};
@@ -393,7 +393,7 @@ TEST(Architecture, ConstituentsAreNamedInTheirTableAlone) {
   EXPECT_GT(read, 700);
 }
 
-// Linking it takes 0.3 s: it is opened where an image needs it (image/image_codec.h).
+// Linking OpenImageIO takes 0.3 s: it is loaded when an image needs it (image/image_codec.h).
 TEST(Architecture, OpenImageIOIsCalledByItsModuleAlone) {
   int includes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {

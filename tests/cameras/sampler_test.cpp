@@ -111,7 +111,7 @@ TEST(LatticeSampler, EdgesHaveLessVarianceThanWithSobolsSequence) {
   EXPECT_LT(half_space_error(*sampler, {kFilm, kLater}, 256), 0.5) << "later pairs are not the same points";
 }
 
-// Bands are dealt out to the samples of a pixel in turn. Of 8, 16 or 32 bands each has every second, fourth or eighth
+// Bands are assigned to the samples of a pixel in turn. Of 8, 16 or 32 bands each has every second, fourth or eighth
 // sample, and these must cover the whole pixel.
 TEST(LatticeSampler, SamplesInTurnCoverThePixel) {
   const auto sampler = make("lattice", 1);

@@ -7,7 +7,7 @@
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
 
-/// `frond bench`; what a sample is worth is tested in tests/instruments. Nothing here hangs on how long anything takes.
+/// `frond bench`. tests/instruments tests variances. No test here depends on measured times.
 namespace frond {
 namespace {
 

@@ -131,7 +131,7 @@ TEST_F(Commands, TheDocumentedPluginsAreThoseOfThisBuild) {
   for (const auto& entry : fs::directory_iterator(docs))
     if (entry.path().filename().string().starts_with("plugins")) documented.insert(entry.path().filename());
   EXPECT_EQ(written, documented);
-  // Each plug-in is in one of the pages, and where the list of all leads.
+  // Each plug-in is in one of the pages, at the link of the list of all plug-ins.
   for (const PluginInfo* info : all_plugins(builtin_registry())) {
     EXPECT_THAT(all, HasSubstr(fmt::format("## {} `{}`\n", info->kind, info->name)));
     EXPECT_THAT(all, HasSubstr(fmt::format("{} [`{}`](plugins_", info->kind, info->name)));
@@ -365,7 +365,7 @@ TEST_F(Commands, WavelengthsTakeParameters) {
               HasSubstr("scene.pbrt:7:37: \"L\" is known from 360 to 830 nm, the render needs 360 to 1000 nm"));
 }
 
-/// A band is a measurement, an image of colours is not: its eye sees little at the ends of the visible.
+/// A band is a measurement; an image of colours is not, and is hardly affected by the ends of the visible range.
 TEST_F(Commands, SpectraWithoutDataAreErrorsInBandsAndWarningsInColours) {
   const auto scene = [this](const std::string& option) {
     return folder_.write("soil.pbrt", option + R"(
@@ -540,7 +540,7 @@ TEST_F(Commands, HelpIsACommandToo) {
   EXPECT_THAT(frond_command({"render", "a.pbrt", "--spp"}).err, StartsWith("frond: --spp"));
 }
 
-/// It knows linear sRGB by that name and not how to get there from anywhere else.
+/// A configuration that has linear sRGB, but no conversion to it from other spaces.
 TEST_F(Commands, AnOpenColorIOConfigurationThatLacksTheFilmsSpaceIsRefusedBeforeRendering) {
   folder_.write("small.ocio", R"(ocio_profile_version: 2
 roles: {default: linear sRGB}

@@ -27,7 +27,7 @@ class ExportCommand : public ::testing::Test {
     EXPECT_THAT(o.out, IsEmpty());
     return o.err;
   }
-  /// Rows of a matrix of the file: those of a direction, in its first block.
+  /// Rows of a direction's matrix in the first block of the file.
   static std::vector<std::vector<double>> matrix(const std::string& xml, const std::string& direction) {
     size_t at = xml.find("<WavelengthDataDirection>" + direction);
     at = xml.find("<ScatteringData>", at) + std::string("<ScatteringData>").size();
@@ -80,7 +80,7 @@ TEST_F(ExportCommand, LeavesAreReciprocalUnlessTheySayOtherwise) {
     const Outcome o = exported(words);
     EXPECT_EQ(o.code, 0) << o.err;
     const auto down = matrix(o.out, "Transmission Back"), up = matrix(o.out, "Transmission Front");
-    // Patch 0 is about the normal: light from ring 5 to it, and from it to any of that ring, which are alike.
+    // Patch 0 is about the normal: light from ring 5 to it, and from it to any patch of this ring, which are equal.
     return std::abs(down[0][70] - up[70][0]) / down[0][70];
   };
   EXPECT_LT(asymmetry({"leaf_solved"}), 1e-4);

@@ -181,7 +181,7 @@ TEST_F(Fitting, NamesTheBandsThatItMisses) {
 /// Fits of many leaves: of the leaf column of a file, and of several files.
 class FittingMany : public Fitting {
  protected:
-  /// Rows of kSpectrum as those of a leaf, times `scale`.
+  /// Rows of kSpectrum as rows of a leaf, times `scale`.
   static std::string rows(const std::string& leaf, double scale) {
     std::string text;
     for (const auto& [nm, r, t] : std::initializer_list<std::array<double, 3>>{{450, .045, .016},
@@ -299,7 +299,7 @@ TEST_F(FittingMany, TheTableHasWhatTheSceneFileHas) {
       const size_t end = line.find('"', name.size());
       const double value = std::stod(line.substr(end + 1));
       ++numbers;
-      // With one of the tables a leaf has none of what only the other ones have.
+      // With one kind of tables a leaf has none of the constituents that only the other kind has.
       if (value != 0) {
         EXPECT_NEAR(table.number(0, line.substr(name.size(), end - name.size())) / value, 1, 1e-5) << line;
       }

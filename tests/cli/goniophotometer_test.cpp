@@ -80,7 +80,7 @@ TEST_F(GoniophotometerCommand, DrawsCurvesAndMaps) {
               AllOf(HasSubstr("20 x 40 patches"), ContainsRegex("abm,specimen=soybean +30 +551 +1000 rays +BRDF")));
   for (const char* text : {"abm,specimen=soybean", "diffusetransmission", "551 nm", "608 nm", "BTDF (sr⁻¹)"})
     EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr(text));
-  // The line that points toward the light is dotted, that of the mirror direction is not.
+  // The line toward the light is dotted, the line of the mirror direction is not.
   for (const char* dash : {"2,3", "none"})
     EXPECT_THAT(bytes_of(path("a.svg")),
                 HasSubstr(fmt::format("#808080' stroke-width='1.5' stroke-dasharray='{}'", dash)));

@@ -6,8 +6,8 @@
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 
-/// Arguments and files that a command once took: what it wrote could not be read, or it said nothing of what it left
-/// out.
+/// Arguments and files that a command once accepted, although its output could not be read or content was omitted
+/// without a message.
 namespace frond {
 namespace {
 

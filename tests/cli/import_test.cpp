@@ -347,7 +347,7 @@ TEST_F(ImportCommand, WhatWouldBeMisreadIsRefused) {
   EXPECT_THAT(refusal("face.obj"), HasSubstr("line 9: the face has vertex \"9\""));
 }
 
-/// Texture coordinates of glTF that run against the vertices, as those of quad_buffer do not.
+/// Texture coordinates of glTF with the opposite orientation of the vertices, unlike quad_buffer.
 TEST_F(ImportCommand, MirroredNormalMapsAreNamed) {
   folder_.write("leaf.png", png_with_alpha());
   const auto said = [this](const std::string& second) {
@@ -413,7 +413,7 @@ TEST_F(ImportCommand, StretchedInstancesAreSearched) {
   EXPECT_THAT(imported("plant.gltf").out, HasSubstr("2 instances of 1 object"));
 }
 
-/// If a file cannot be put in its place, those that were there are there again, and no other.
+/// If a file cannot be moved into place, the old files are restored and no new ones remain.
 TEST_F(ImportCommand, AllOrNothingIsWritten) {
   folder_.write("plant.obj", std::string(kQuad) + "usemtl leaf\nf 1 2 3\n");
   fs::create_directories(path("refused-plant.pbrt/x"));
@@ -492,7 +492,7 @@ TEST_F(ImportCommand, NamesAreQuoted) {
                              HasSubstr("MakeNamedMaterial \"_\"")));
 }
 
-/// The folder of the files to write is that of the model's images.
+/// The folder of the files to write is the folder of the model's images.
 TEST_F(ImportCommand, InputsAreNotReplaced) {
   folder_.write("refused-files/leaf.png", png_with_alpha());
   folder_.write("refused-files/plant.mtl", "newmtl leaf\nmap_Kd leaf.png\n");

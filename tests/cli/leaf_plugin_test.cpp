@@ -6,7 +6,7 @@
 #include "tests/study/choose_scene.h"
 #include "tests/support/input_error.h"
 
-/// A leaf model of a shared object (examples/plugins/leaf_angular.cpp) takes part in all that built-in ones do.
+/// A leaf model of a shared object (examples/plugins/leaf_angular.cpp) is supported wherever built-in models are.
 namespace frond {
 namespace {
 

@@ -20,7 +20,7 @@ using Words = std::vector<std::string>;
 
 constexpr const char* kCsv = "wavelength,R,T\n500,0.1,0.1\n550,0.2,0.2\n600,0.1,0.1\n";
 
-/// Works in a folder of its own, so that names of files can be relative.
+/// Changes to a temporary folder, so that names of files can be relative.
 class Outputs : public ::testing::Test {
  protected:
   Outputs() { fs::current_path(folder_.name_of("")); }

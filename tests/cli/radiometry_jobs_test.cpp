@@ -101,13 +101,13 @@ TEST_F(RadiometryJobs, PhotonsAreCountedInPhysicalUnitsAlone) {
   EXPECT_THAT(measured(kSun, {"flux"}).err, HasSubstr("no PAR: bands from 400"));
   EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", par}).err,
               HasSubstr("; incident PAR 1977.9 µmol/(m2 s), irradiance solar-am1.5-global\n"));
-  // A sky has a unit: its photons are not those of another sun.
+  // A sky has a unit: its photons are not computed from another light.
   EXPECT_EQ(measured(sky, {"flux", "--wavelengths", par, "-q", "--csv", "-"}).out,
             measured(sky, {"flux", "--wavelengths", par, "-q", "--csv", "-", "--irradiance", "scene"}).out);
   EXPECT_THAT(measured(sky, {"flux", "--wavelengths", par}).err, HasSubstr("irradiance scene\n"));
 }
 
-/// PAR and green have one mean wavelength; the names and the order are those of the files.
+/// PAR and green have equal mean wavelengths; names and order follow the files.
 TEST_F(RadiometryJobs, BandsHaveNamesInAllOutputs) {
   folder_.write("par.spd", "400 1 700 1");
   folder_.write("green.spd", "540 1 560 1");
@@ -229,7 +229,7 @@ TEST_F(RadiometryJobs, AnErrorIsEstimatedFromSeveralPaths) {
   EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", "550,670", "--paths", "1"}).err, HasSubstr("64 paths; RMS"));
 }
 
-/// One of the two leaves is too small for a path to meet it.
+/// One of the two leaves is too small to be hit by a path.
 TEST_F(RadiometryJobs, TheErrorOfAnInstanceWithoutLightIsUnknown) {
   more_ =
       "ObjectBegin \"leaf\"\nShape \"disk\" \"float radius\" 0.3\nObjectEnd\n"

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// Measured figures that reports are drawn beside: a slip in the file would be a slip in the report.
+/// Measured figures that reports show for comparison: an error in the file would be an error in the report.
 TEST(Reference, MeasuredSoybeanLeavesAreWholeAndPossible) {
   const CsvTable csv = parse_csv(bytes_of(FROND_SOURCE_DIR "/tests/reference/lopex93_soybean.csv"));
   ASSERT_EQ(csv.rows.size(), 211u);

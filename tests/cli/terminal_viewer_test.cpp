@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A terminal without a screen: what is written to it is kept.
+/// A pseudo-terminal whose output is recorded.
 class Terminal {
  public:
   Terminal(unsigned short columns, unsigned short rows) {

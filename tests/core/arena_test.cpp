@@ -88,7 +88,7 @@ TEST(Arena, ResetUsesWhatThereIsAgain) {
   }
 }
 
-/// Blocks double, and those too small for one thing are passed over: whatever comes, it comes to an end.
+/// Blocks double in size, and blocks that are too small for an object are skipped, so that the search terminates.
 TEST(Arena, CapacityStaysNearTheLargestDemand) {
   Arena arena;
   for (unsigned seed = 0; seed < 200; ++seed) {

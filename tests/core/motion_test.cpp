@@ -1,4 +1,4 @@
-// Motion between two transforms: against closed forms, and against what stands still.
+// Motion between two transforms: compared with closed forms and with scenes at rest.
 
 #include "core/math/motion.h"
 
@@ -181,8 +181,8 @@ std::unique_ptr<Scene> scene(const std::string& world, ThreadPool& pool) {
   return std::make_unique<Scene>(description, registry, pool, silent_log());
 }
 
-// Packets, in which each ray has its own time, meet what single rays meet; at the start and at the end both meet what
-// scenes without motion hold.
+// Packets, in which each ray has its own time, have the same hits as single rays; at the start and at the end these
+// equal the hits in scenes without motion.
 TEST(Motion, IsTheSameForPacketsAndAtItsEndsForStillScenes) {
   ThreadPool pool(2);
   const std::string end = "Translate .4 .3 -.2 Rotate 140 1 2 3 Scale 1.2 .7 1 ";

@@ -43,7 +43,7 @@ TEST(KlemsBasis, NodesFindMeansOverTheirPatch) {
     }
 }
 
-// f = (2 + light.z) (3 + seen.z) + light.x, which tells sides and directions apart.
+// f = (2 + light.z) (3 + seen.z) + light.x, which distinguishes sides and directions.
 TEST(KlemsMatrices, HoldMeansOfEachPairOnEachSide) {
   const Planted planted([](const Vec3& seen, const Vec3& light) { return (2 + light.z) * (3 + seen.z) + light.x; });
   const KlemsMatrices m(planted.exported(), {500});

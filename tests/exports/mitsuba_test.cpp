@@ -1,4 +1,4 @@
-// Export of scenes to Mitsuba: what is written, and refusals with their position.
+// Export of scenes to Mitsuba: the written files, and errors with their position.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -237,7 +237,7 @@ TEST_F(MitsubaScene, AllObstaclesAreReportedAtOnce) {
   EXPECT_THAT(some, AllOf(Not(HasSubstr("coateddiffuse")), Not(HasSubstr("checkerboard")), HasSubstr("light \"sky\"")));
 }
 
-/// The map is outside of "twosided", which would mirror it on the back; its texels are those of the file.
+/// The map is outside of "twosided", which would mirror it on the back; its texels are the file's.
 TEST_F(MitsubaScene, NormalMapsAreExported) {
   const std::vector<float> normals{0.5f, 0.5f, 1, 0.6f, 0.5f, 0.9f, 0.5f, 0.4f, 0.9f, 0.4f, 0.6f, 0.9f};
   const std::string xml =
@@ -264,7 +264,7 @@ TEST_F(MitsubaScene, BumpMapsAreExported) {
               Not(HasSubstr("bumpmap")));
 }
 
-/// Products and mixtures of images with one mapping are images; others are refused, or their mean is taken.
+/// Products and mixtures of images with one mapping are images; others are rejected or replaced by their mean.
 TEST_F(MitsubaScene, TexturesOfImagesAreTabulated) {
   const std::string image = this->image("map.exr", {0, 0, 0, 1, 1, 1, 0.5f, 0.5f, 0.5f, 0.25f, 0.25f, 0.25f});
   const auto leaf = [&](const std::string& more) {
@@ -282,7 +282,7 @@ TEST_F(MitsubaScene, TexturesOfImagesAreTabulated) {
   EXPECT_THAT(refusal(other), HasSubstr("images with different mappings"));
 }
 
-/// The shares of each texel are those of a leaf with its chlorophyll.
+/// The shares of each texel equal the shares of a leaf with its chlorophyll.
 TEST_F(MitsubaScene, ALambertianLeafFollowsItsTextures) {
   const std::string image = this->image("map.exr", {2, 2, 2, 4, 4, 4, 2, 2, 2, 4, 4, 4});
   const std::string xml = exported(world("Texture \"t\" \"float\" \"imagemap\" \"string filename\" " + image +

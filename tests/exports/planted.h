@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// A material whose f is any function of where it is seen from and where light comes from.
+/// A material whose f is an arbitrary function of the directions of view and of light.
 class Planted {
  public:
   using F = std::function<float(const Vec3& seen, const Vec3& light)>;

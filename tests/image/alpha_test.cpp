@@ -7,7 +7,7 @@
 #include "image/image_file.h"
 #include "tests/support/input_error.h"
 
-/// Each format with alpha that is read, with the same pixels: colours are those of the file, not multiplied by alpha.
+/// Each format with alpha that is read, with the same pixels: colours are the file's, not multiplied by alpha.
 namespace frond {
 namespace {
 
@@ -89,7 +89,7 @@ class Alpha : public testing::Test {
   ImageFile file_of(const std::string& name, const std::string& bytes) const {
     return read_image(folder_.write(name, bytes), {});
   }
-  /// Colours are as in kPixels, where alpha leaves them to be known: `is_known` by alpha.
+  /// Colours equal kPixels where alpha determines them: `is_known`, by alpha.
   static void expect_pixels(const Image& image, const std::string& name, const std::function<bool(int)>& is_known) {
     SCOPED_TRACE(name);
     ASSERT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));

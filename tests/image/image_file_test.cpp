@@ -61,7 +61,7 @@ class ImageFiles : public testing::Test {
     fs::remove_all(folder_);
   }
 
-  /// Values that say where they come from, some out of range.
+  /// Values that identify their pixel and channel, some of them out of range.
   static Image sample(std::vector<std::string> channels, int width = 37, int height = 21) {
     Image image(width, height, std::move(channels));
     for (int y = 0; y < height; ++y)
@@ -357,7 +357,7 @@ TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
   }
 }
 
-/// OpenEXR takes the pixels of a chunk without bytes from memory as it is.
+/// OpenEXR takes the pixels of an empty chunk from uninitialised memory.
 TEST_F(ImageFiles, PixelsWithoutDataAreBlack) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer fills memory that is allocated with numbers of its own";

@@ -67,7 +67,7 @@ TEST(ImageSignatures, TgaNeedsItsExtensionAndAValidHeader) {
   EXPECT_THAT(refusal(tga().substr(0, 18), "f.tga"), HasSubstr("that of no image"));
 }
 
-/// These corrupted the heap, crashed or did not end while the name chose the reader.
+/// When the name chose the reader, these files corrupted the heap, crashed the program or did not terminate.
 TEST(ImageSignatures, MisleadingNamesReachNoOtherReader) {
   const TestFolder folder("signatures");
   for (const char* name : {"f.png", "g.exr", "x.null", "v.avi", "v.mp4", "d.dpx", "r.rla", "a.iff", "n.vdb", "t.term"})

@@ -203,7 +203,7 @@ TEST(GltfCheck, GeometryThatWouldBeMisreadIsRefused) {
   EXPECT_THAT(refusal(json.dump()), HasSubstr("its accessor has no bufferView"));
 }
 
-/// The library checks none of these, and would read other bytes.
+/// The library does not check these, and would read other bytes.
 TEST(GltfCheck, AccessorsEndInsideTheirBuffers) {
   EXPECT_THAT(refusal_with("/accessors/0/byteOffset", "4"), HasSubstr("longer than its bufferView"));
   EXPECT_THAT(refusal_with("/accessors/0/count", "5"), HasSubstr("longer than its bufferView"));

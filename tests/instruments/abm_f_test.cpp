@@ -13,7 +13,7 @@ namespace {
 
 ParsedParam number(std::string name, double value) { return {"float", std::move(name), {}, {}, std::vector{value}}; }
 
-/// A leaf as abm has it, and the same for leaf_solved where that wants other words for it.
+/// Parameters of a leaf for abm, and for leaf_solved if it needs others.
 struct Leaf {
   std::string name;
   std::vector<ParsedParam> walked;

@@ -77,7 +77,7 @@ SphereBox box_of(const Patch& p) {
           p.phi_max_deg * kDegree};
 }
 
-/// Chi-square test of what the detectors caught against the integrals of f. All rays weigh the same.
+/// Chi-square test of the detectors' counts against the integrals of f. All rays have equal weights.
 void expect_agreement(const Prepared& specimen, double theta, const DetectorSphere& sphere, int64_t rays) {
   const LitMaterial lit = specimen.under(theta);
   const auto measurement = measure_f(lit, sphere, rays, kPool);
@@ -154,7 +154,7 @@ TEST(Goniophotometer, IntegratesALambertianSurface) {
   }
 }
 
-// Every narrow lobe is found, and where the light meets the model the other way round, it is turned.
+// Every narrow lobe is found, also if the incident direction of the model is reversed.
 TEST(Goniophotometer, IntegratesWhatTheSolverKnows) {
   for (const char* incident : {"traced", "light"})
     for (const double theta : {0.0, 30.0, 80.0, 100.0}) {

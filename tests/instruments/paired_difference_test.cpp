@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-/// Off by `bias` in the first channel of every other pixel, with normal noise of its own in each half.
+/// Off by `bias` in the first channel of every other pixel, with independent normal noise in each half.
 PairedDifference difference(double bias, double noise, unsigned seed, size_t pixels = 20000) {
   std::mt19937_64 rng(seed);
   std::normal_distribution<double> normal;

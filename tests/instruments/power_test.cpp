@@ -16,7 +16,8 @@ constexpr double kPower = 0.95, kLevel = 1e-3;
 constexpr int kExperiments = 2000;
 const double kTolerance = 5 * std::sqrt(kPower * (1 - kPower) / kExperiments);
 
-/// Share of the experiments that find an error. `find` returns whether one does, from a stream of its own.
+/// Share of the experiments that find an error. `find` returns whether an experiment does, with a separate random
+/// stream.
 template <class Experiment>
 double share_found(const Experiment& find) {
   double found = 0;
@@ -48,14 +49,14 @@ TEST(Power, OfTheTestOfAMean) {
               kPower, kTolerance);
 }
 
-/// Weights of a lobe that is met once in 50 samples: the estimate is skewed.
+/// Weights of a lobe that one of 50 samples hits: the estimate is skewed.
 TEST(Power, OfTheTestOfASkewedMean) {
   const auto rare = [](RandomStream& numbers) {
     Moments moments;
     for (int i = 0; i < 4000; ++i) moments.add(numbers.uniform() < 0.02f ? 50 : 0);
     return moments.estimate();
   };
-  // The detectable difference of one estimate varies with its own error: that of the expected one is asked for.
+  // The detectable difference of an estimate varies with the estimate's error: the expected one is used.
   Moments all;
   for (int i = 0; i < 4000; ++i) all.add(i % 50 == 0 ? 50 : 0);
   const double excess = detectable_difference(all.estimate(), kLevel, kPower);

@@ -64,7 +64,7 @@ TEST(RenderError, CountsThePixelsThatAreUsed) {
   EXPECT_EQ(error_of(p, none).total.value, 0);
 }
 
-/// Over the true mean, 0.3: noise of either method leaves the relative figures what they are.
+/// Over the true mean, 0.3: noise of either method does not change the relative figures.
 TEST(RenderError, InUnitsOfTheReferencesMeanIsRelative) {
   const Images p = images(0.04, 0.05, 0.03);
   const RenderError e = in_unit(mean_of({p.r1, p.r2}), error_of(p));

@@ -122,7 +122,7 @@ std::vector<SpectrophotometerMeasurement> repeat(const Prepared& specimen, int t
   return measurements;
 }
 
-/// Two-sided p-value of "the stated variances are those of the means", by the means' own spread.
+/// Two-sided p-value of "the stated variances are the variances of the means", by the spread of the means.
 double spread_p(const std::vector<SpectrophotometerMeasurement>& measurements,
                 Estimate SpectrophotometerMeasurement::*value) {
   Moments means, variances;
@@ -169,7 +169,7 @@ TEST(Spectrophotometer, StopsAtTheStandardErrorAskedFor) {
   // A is about 0.776: sqrt(A (1 - A) / rays) = 5e-4 takes 695,000 rays; rounds are whole blocks and a margin.
   EXPECT_GT(m.rays, 600'000);
   EXPECT_LT(m.rays, 900'000);
-  // Rounds are no other measurement than one of as many rays.
+  // A measurement in rounds equals a measurement of as many rays at once.
   expect_same_bits(measure(leaf.under(8), m.rays).reflectance, m.reflectance);
 }
 
@@ -180,7 +180,8 @@ TEST(Spectrophotometer, StopsAtTheNumberOfRays) {
 }
 
 TEST(Spectrophotometer, AnOutcomeThatNoRayMetDoesNotEndTheMeasurement) {
-  // Perfectly black: no standard error after any number of rays, but as many are shot as it takes to know.
+  // Perfectly black: the standard error is 0 after any number of rays, but enough rays are traced to exclude a rare
+  // event.
   const Prepared black("diffuse", {level("reflectance", 0)}, 551);
   const auto m = measure_shares(black.under(8), {.rays = 1'000'000, .standard_error = 1e-5}, kPool);
   EXPECT_GE(m.rays, 200'000);
@@ -225,7 +226,7 @@ TEST(Spectrophotometer, SeesWhatARendererShows) {
   const Prepared sheet("diffusetransmission", {level("reflectance", 0.3), level("transmittance", 0.55)}, 1000);
   EXPECT_GT(p_of(measure_as_rendered(sheet, 120).reflectance, 0.3), rate);
   EXPECT_GT(p_of(measure_as_rendered(sheet, 120).transmittance, 0.55), rate);
-  // A leaf without mesophyll loses nothing, if what it calls incident is the light.
+  // A leaf without mesophyll conserves energy, if the light's direction is its incident direction.
   const ParsedParam clear = real("mesophyllfraction", 0);
   const Prepared light("abm", {clear, word("incident", "light")}, 551), traced("abm", {clear}, 551);
   for (const double theta : {5.0, 75.0}) {

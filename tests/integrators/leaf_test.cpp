@@ -54,7 +54,7 @@ void expect_same(const Film& a, const Film& b, const std::string& what) {
     expect_same(channel_mean(a, c), channel_mean(b, c), fmt::format("{}, channel {}", what, c));
 }
 
-/// The material's own f cos, channel by channel, averaged over calls with streams of their own.
+/// The material's own f cos, channel by channel, averaged over calls with separate streams.
 std::array<ChannelMean, 3> own_f_cos(const std::string& plugin, std::vector<ParsedParam> params, const Vec3& wo,
                                      const Vec3& wi, int calls) {
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());

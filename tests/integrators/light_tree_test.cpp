@@ -98,7 +98,7 @@ TEST(LightTree, WhateverMayArriveMayBeChosen) {
   EXPECT_GT(arrived, 50000);
 }
 
-/// The importance of a lamp close by, which may be covered, can be far above that of another.
+/// The importance of a lamp close by, which may be covered, can be far above another's.
 TEST(LightTree, ADistantLampMayBeChosenBesideACloseOne) {
   const Vec3 close{0, 0, -0.001f}, far{0, 0, 10};
   const LightTree tree({{0, {.min = close, .max = close}, 1e4}, {1, {.min = far, .max = far}, 10}});
@@ -111,7 +111,7 @@ TEST(LightTree, ADistantLampMayBeChosenBesideACloseOne) {
   EXPECT_EQ(choice->probability, probability);
 }
 
-/// 1,000 lamps over a plane, in closed form; by what they give there is less noise than by power.
+/// 1,000 lamps over a plane, in closed form; selection by contribution has less noise than selection by power.
 TEST(LightTree, AThousandLampsAddUpWithLittleNoise) {
   std::string world =
       "Material \"diffuse\" \"spectrum reflectance\" [360 .4 2500 .4]\n"

@@ -2,7 +2,7 @@
 
 #include "tests/support/render_text.h"
 
-/// Materials that say that the surface is not there.
+/// Materials that return no BSDF: invisible surfaces.
 namespace frond {
 namespace {
 

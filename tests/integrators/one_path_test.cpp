@@ -1,4 +1,4 @@
-// Integrators that know one path at a time.
+// Integrators that trace one path at a time.
 
 #include <gtest/gtest.h>
 

@@ -55,8 +55,8 @@ double expect_mean(const Film& film, double expected) {
   return worst;
 }
 
-// Refraction changes radiance by n^2 at the way in and by its inverse at the way out: what roulette and cut-off see
-// must not, or paths inside glass would be ended, or kept, by it.
+// Refraction multiplies radiance by n^2 on entry and by its inverse on exit. Roulette and cut-off must not see this
+// factor, or it would terminate or keep paths inside glass.
 TEST(Path, LosslessGlassAroundWhiteIsNotSeenInAFurnace) {
   const std::string sky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
   const std::string glass =
@@ -70,7 +70,7 @@ TEST(Path, LosslessGlassAroundWhiteIsNotSeenInAFurnace) {
         "\"integer maxdepth\" 100000 \"string termination\" \"attenuation\" \"float cutoff\" 0.5"})
     for (const std::string& world : {sky + glass, sky + glass + white}) {
       const Film film = render_text(looking_down(world, 0.6, 8, integrator), {.samples = 64});
-      // No path weighs more or less than another: without noise, but for what floats round.
+      // All paths have equal weights: no noise except for rounding.
       for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) EXPECT_NEAR(film.mean(x, y)[1], 1, 1e-3) << x << ", " << y << ", " << integrator;
     }
@@ -182,8 +182,8 @@ TEST(Path, WhiteFurnaceIsWhite) {
   }
 }
 
-/// Glass keeps its light: among light that is even it cannot be seen. Each pixel and channel is tested, 432 that may
-/// have noise: a false alarm at one change of the seed in 4000.
+/// Glass conserves energy: under uniform light it is invisible. Each pixel and channel is tested, 432 that may have
+/// noise: a false alarm at one change of the seed in 4000.
 class GlassFurnace : public ::testing::Test {
  protected:
   static constexpr int kSize = 6;

@@ -1,4 +1,4 @@
-// Rays that leave a plane must not meet it again, wherever it lies and by whatever instances it is placed.
+// Rays that leave a plane must not hit it again, at any position and under any nesting of instances.
 
 #include <gtest/gtest.h>
 

@@ -48,8 +48,8 @@ TEST(VolPathMedia, InsideOfAMirroredInstanceStaysInside) {
 
 const std::string kBox = R"( "point3 p0" [-100 -100 -1] "point3 p1" [100 100 0])";
 
-// One band does not meet the medium; the others do. The density is that of the grid of one cell, whose integral over
-// the layer is 3/4.
+// One band is not affected by the medium; the others are. The density is a grid of one cell, whose integral over the
+// layer is 3/4.
 TEST(VolPathMedia, AGridMayBeEmptyInOneBand) {
   expect_radiance(looking_down(kSky + layer(R"("string type" "uniformgrid" "float density" 1 "float sigma_s" 0
                                    "spectrum sigma_a" [450 2 550 0 552 0 650 1])" +

@@ -28,7 +28,7 @@ TEST(VolPath, AnAbsorbingLayerEmits) {
 }
 
 /// Radiance of a layer of thickness 1 whose density is a grid of one cell, 1 - |u - 1/2|, by quadrature.
-/// `emitted(share)` is the emission over that of the sky, where the grid's share of its value is `share`.
+/// `emitted(share)` is the emission relative to the sky's, for the share `share` of the grid's value.
 template <class Emitted>
 double emitting_layer(double sigma_a, const Emitted& emitted) {
   constexpr int kSteps = 20000;
@@ -66,7 +66,7 @@ TEST(VolPath, AUniformGridGlowsByItsTemperature) {
                   });
 }
 
-// Le of an rgb grid is not normalized: that of white is D65 whose integral is that of ybar.
+// Le of an rgb grid is not normalized: for white it is D65 whose integral equals the integral of ybar.
 TEST(VolPath, AnRgbGridEmits) {
   const double integral = photometric(ConstantSpectrum(1, {360, 830}));
   expect_radiance(
@@ -121,7 +121,7 @@ double albedo_at(double nm) { return ramp(nm, 0.4, 0.95); }
 const std::string kDeep = layer(R"("string type" "homogeneous" "spectrum sigma_a" [400 60 700 5]
                                    "spectrum sigma_s" [400 40 700 95])");
 
-// Under an even sky the radiance at the cosine m is that of the plane albedo, 1 - H(m) sqrt(1 - w).
+// Under a uniform sky the radiance at the cosine m is the plane albedo, 1 - H(m) sqrt(1 - w).
 TEST(VolPath, ADeepLayerUnderAnEvenSkyReflectsAsTheHFunctionSays) {
   expect_radiance(looking_down(kSky + kDeep, 1000), 2048,
                   [](double nm) { return 1 - h_function(albedo_at(nm), 1) * std::sqrt(1 - albedo_at(nm)); });
@@ -236,7 +236,7 @@ AttributeEnd
   }
 }
 
-// Leaves of vanishing size in all directions alike: the gap fraction is exp(-LAI / 2), as G = 1/2.
+// Leaves of vanishing size with all orientations equally likely: the gap fraction is exp(-LAI / 2), as G = 1/2.
 TEST(VolPath, ATurbidMediumHasTheGapFractionOfSphericalLeaves) {
   expect_radiance(
       looking_down(kSky + layer(R"("string type" "turbid" "float density" 3 "spectrum reflectance" [300 0 900 0])")),

@@ -13,7 +13,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Reflects only, but samples both sides alike: weights are 0 or twice the albedo.
+/// Reflects only, but samples both sides equally: weights are 0 or twice the albedo.
 class HalfBlack : public Honest {
  public:
   HalfBlack(const SampledWavelengths& lambda, float albedo) : Honest(lambda, albedo, 0) { reflected_ = 0.5f; }
@@ -133,7 +133,7 @@ TEST(LocalError, IsFoundOnOneSide) {
 TEST(LocalError, IsFoundInTransmission) {
   EXPECT_THAT(broken_laws(locally_bright<Transmission>()), ElementsAre(Law::energy));
 }
-/// An angle that is not tested shows nothing: docs/extending.md says so, and the report names its angles.
+/// Errors at untested angles are not found: docs/extending.md says so, and the report names its angles.
 TEST(LocalError, IsNotFoundBetweenTheAngles) {
   EXPECT_THAT(broken_laws(locally_bright<BetweenTheAngles>()), IsEmpty());
   EXPECT_THAT(broken_laws(judged(LocallyBright<BetweenTheAngles>(kThree), {.angles_deg = {45}})),

@@ -56,7 +56,7 @@ ParsedParam falling(const std::string& name, double at_400, double at_700) {
   return p;
 }
 
-/// Tables that are quick to make: the laws hold for what is in them, be it as noisy as it may.
+/// Tables that are quick to make. The laws hold for any table, however noisy.
 const SweepOptions kSweep{
     .pinned = {given("string", "tablemethod", std::string("montecarlo")), given("integer", "tablerays", 100.0),
                given("float", "tolerance", 0.02),
@@ -226,8 +226,8 @@ TEST(Rough, Obeys) {
   }
 }
 
-// A reflection 1e-4 wide one way and as wide as the hemisphere the other: the quadrature of pdf has nodes on either
-// side of it, and 250 pilot samples do not lie in all of its parts.
+// A reflection 1e-4 wide in one direction and as wide as the hemisphere in the other: the quadrature of pdf has nodes
+// on either side of it, and 250 pilot samples do not lie in all of its parts.
 TEST(Rough, ObeysWithFewSamplesWhereTheQuadratureOverlooksABand) {
   const ParameterSet band{
       "band",

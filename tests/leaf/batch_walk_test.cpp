@@ -372,8 +372,8 @@ TEST(WalkBatch, WithoutLobesDirectionsAreIdeal) {
   }
 }
 
-// In an antidermal wall of a higher index than both its neighbours, light past both critical angles goes to and fro for
-// ever: it neither leaves nor is absorbed. A wall that absorbs a little ends the plain walk, at the same shares.
+// In an antidermal wall of a higher index than both its neighbours, light past both critical angles is trapped: it
+// neither leaves nor is absorbed. A wall with weak absorption ends the plain walk with the same shares.
 TEST(WalkBatch, LightTrappedForEverEndsAsAbsorbed) {
   const TissueModel model = model_of("soybean");
   Tissue tissue = model.at(800);

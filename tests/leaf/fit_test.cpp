@@ -229,7 +229,7 @@ TEST(Fit, ErrorsAreThoseOfTheNoise) {
   EXPECT_GT(sum / count, 0.2);  // the errors are not much too large
 }
 
-/// Visible light alone says nothing of what absorbs beyond.
+/// Visible light alone does not determine constituents that absorb beyond it.
 TEST(Fit, SaysWhatTheDataDoNotTell) {
   const TissueParams truth = find_specimen("soybean")->params;
   FitRequest request{.measurements = spectra_of(truth, {8}, 10),
@@ -250,7 +250,7 @@ TEST(Fit, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(fit_leaf(request, ThreadPool(1)).params, fit_leaf(request, ThreadPool(3)).params);
 }
 
-/// The search interpolates; what it reports does not. 4 nodes per segment, as the fit has, are within 5e-4 of more.
+/// The search interpolates; the reported values do not. 4 nodes per segment, as the fit has, are within 5e-4 of more.
 TEST(Fit, ReportsTheSolvedWalk) {
   const FitRequest request{.measurements = spectra_of(another_of_prospect(), {8}, 50)};
   const FitResult result = fit_leaf(request, ThreadPool(1));

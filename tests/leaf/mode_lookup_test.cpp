@@ -87,7 +87,7 @@ TEST(ModeLookup, IsSmall) {
   EXPECT_LT(ModeLookup(request, make_mode_table(request, pool), false).bytes(), size_t{64 * 1024});
 }
 
-/// At mean angles, the whole of what is looked up is the solver's.
+/// At medium angles, the integral of the looked-up values equals the solver's shares.
 TEST(ModeLookup, HoldsTheSolversEnergy) {
   constexpr double kTolerance = 5e-4;
   const ThreadPool pool(2);

@@ -56,7 +56,7 @@ TEST(ModeTableFile, KeepsDepths) {
 /// The same number in all nine places of a mode's file, for one cell.
 std::string mode_of(double h) { return fmt::format("{0} {0} {0}\n{0} {0} {0}\n{0} {0} {0}\n", h); }
 
-/// A leaf that scatters alike in all directions.
+/// A leaf that scatters equally in all directions.
 std::string plain_leaf() {
   std::string text = "# plain\ncells 1\nerror 0 # none\n\nwavelength_nm 551 index 1.4 depth 0\n";
   for (const char* side : {"adaxial", "abaxial"})

@@ -9,8 +9,8 @@
 
 namespace frond::test {
 
-/// The random walk as the model's description reads, in double precision, one ray at a time, with nothing shared with
-/// the program but the description of the tissue: what the fast walks are compared with, in results and in speed.
+/// The random walk as the model's description states it, in double precision, one ray at a time. It shares only the
+/// description of the tissue with the program. Reference for results and speed of the fast walks.
 class PlainWalk {
  public:
   PlainWalk(const leaf::Tissue& tissue, uint64_t seed) : tissue_(tissue), random_(seed) {}
@@ -47,7 +47,7 @@ class PlainWalk {
     return medium == 2 ? whole * place : whole * (1 - place);
   }
 
-  /// Beer's law: the free path ends before the way does.
+  /// Beer's law: the free path ends within the medium.
   bool absorbed(double depth, double cosine) {
     if (depth == 0) return false;
     return -std::log(1 - uniform()) * (tissue_.sieve_and_detour ? std::cos(cosine) : cosine) < depth;

@@ -45,8 +45,8 @@ double standard_error(double sum, double sum2, int64_t rays) {
   return std::sqrt((mean(sum2, rays) - m * m) / static_cast<double>(rays));
 }
 
-/// `batches` batches from number `first` on, each with its own rays, which no other angle and leaf shares: their errors
-/// would go the same way.
+/// `batches` batches from number `first` on, each with its own rays, which no other angle and leaf shares: shared rays
+/// would correlate their errors.
 Sums walk_many(const Tissue& tissue, double theta_deg, int64_t first, int64_t batches, const ThreadPool& pool) {
   const uint64_t key = hash_key(std::bit_cast<uint64_t>(theta_deg), std::bit_cast<uint64_t>(tissue.optical_depth[2]));
   const double theta = theta_deg * std::numbers::pi / 180;

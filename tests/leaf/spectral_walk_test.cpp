@@ -19,7 +19,7 @@ Vec3d direction(double theta_deg, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-/// Four wavelengths whose refraction and absorption have next to nothing in common.
+/// Four wavelengths with very different refraction and absorption.
 class Dispersive {
  public:
   explicit Dispersive(std::string_view leaf) : model_(params_of(leaf)) {

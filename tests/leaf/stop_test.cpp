@@ -1,4 +1,4 @@
-// Solutions and walks end when a stop is requested: each is called with a request that is there before.
+// Solutions and walks end when a stop is requested. The stop is requested before each call.
 
 #include "core/stop.h"
 

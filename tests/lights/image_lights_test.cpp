@@ -27,7 +27,7 @@ using ::testing::IsEmpty;
 
 constexpr double kPiD = std::numbers::pi;
 
-/// A scene that a test spells out, and what was said of it.
+/// A scene in the text of a test, and its messages.
 struct Loaded {
   explicit Loaded(const std::string& text, const std::string& wavelengths = "smpte") {
     class Keep final : public Log {
@@ -423,7 +423,7 @@ TEST(ImageAreaLight, GivesOffThePowerThatIsAskedFor) {
       3 / (kPiD * kPiD), 0.002);
 }
 
-/// Reading says of each image once that it holds what is no light.
+/// Reading warns once for each image with values that are not light.
 TEST(ImageAreaLight, ReadsItsImageOnceForAllItsShapes) {
   const TestFolder folder("lights");
   Image image = even(4, 4, 1);
@@ -447,7 +447,7 @@ TEST(LightImages, AreNotNegative) {
   EXPECT_THAT(sky.warnings, Contains(HasSubstr("down to -0.5")));
 }
 
-/// Beyond some thousands of colours reflectances stand between others.
+/// With more than some thousands of colours, reflectances are interpolated.
 TEST(LightImages, HaveTheirColorsHoweverMany) {
   constexpr int kSize = 160;
   Image image(kSize, kSize, {"R", "G", "B"});
@@ -496,7 +496,8 @@ TEST(Cameras, SphericalOnesHaveYAtTheTop) {
   expect(equal, {20, 40}, {0, 0, 1});
 }
 
-/// Rays of several points are those of each, to the bit; 7 is no multiple of the number that is computed at once.
+/// Rays of several points equal the rays of each point to the bit; 7 is no multiple of the number that is computed at
+/// once.
 TEST(Cameras, RaysOfSeveralPointsAreThoseOfEach) {
   for (const std::string camera :
        {"LookAt 1 2 3 0 0.5 0 0 0 1 Camera \"perspective\"",
@@ -584,7 +585,7 @@ TEST(Spectra, OfBlackbodiesTakeTheTemperatureAlone) {
   EXPECT_TRUE(plain.warnings.empty());
 }
 
-/// An rgb means what the space says in which it stands.
+/// The colour space of its directive defines the meaning of an rgb value.
 TEST(ColorSpaces, HoldToTheEndOfTheirBlock) {
   const auto luminance = [](const std::string& before, const std::string& light) {
     return photometric(

@@ -30,7 +30,7 @@ constexpr double kPiD = std::numbers::pi, kRadians = kPiD / 180;
 constexpr const char* kBands = "bands,wavelengths=400,550,1100,2000";
 constexpr double kSunRadius = 0.2666 * kRadians;
 
-/// A sky that a test spells out, and what was logged.
+/// A sky in the text of a test, and its log.
 struct Sky {
   explicit Sky(const std::string& params, const std::string& transform = "") {
     class Keep final : public Log {

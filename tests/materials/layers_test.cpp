@@ -58,8 +58,8 @@ TEST(Dielectric, RefractsBySnell) {
   EXPECT_NEAR(back->f[0] * std::abs(back->wi.z), transmitted * 2.25f, 1e-5f);
 }
 
-/// Where lanes part, each continues with its own transmittance: on average over the heroes, for any one of which only a
-/// lane that transmits continues. From inside at this angle, the first two lanes are reflected totally.
+/// Where lanes are refracted by different angles, each lane has its own transmittance in the mean over the heroes; with
+/// a given hero only this lane continues. From inside at this angle, the first two lanes are reflected totally.
 TEST(Dielectric, EveryLaneOfADispersiveGlassHasItsTransmittance) {
   SampledSpectrum eta;
   for (int lane = 0; lane < kLanes; ++lane) eta[lane] = 2 - 0.25f * float(lane);

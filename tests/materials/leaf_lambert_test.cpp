@@ -186,7 +186,7 @@ TEST(LeafLambert, TakesMeasurementsAsTheyAre) {
   }
 }
 
-/// Angles of a leaf table: those of the file exactly, and the mean over all of them.
+/// Angles of a leaf table: the file's angles exactly, and the mean over all of them.
 TEST(LeafLambert, TakesLeafTables) {
   const TestFolder folder("leaf_lambert");
   const std::string rows = "8,500,0.04,0.06,0.1\n40,500,0.05,0.07,0.09\n80,500,0.3,0.1,0.05\n";

@@ -156,7 +156,7 @@ TEST_F(Pigments, AreNeededInPairsAndWithinTheirData) {
               HasSubstr("no.spd"));
 }
 
-/// Mean weight of `sample`: what comes back of light of each wavelength.
+/// Mean weight of `sample`: the albedo at each wavelength.
 struct Albedo {
   std::array<Estimate, 3> reflected, transmitted;
 };
@@ -289,7 +289,8 @@ TEST(LeafSimplified, SharesAFileWithThoseOfItsWavelengthsAlone) {
       "leaf_simplified", {words("tablefile", {folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n" + rows)})});
 }
 
-/// A file replaces all of the tissue: every parameter of it is named, and none of the surface and the direction.
+/// A file replaces the whole tissue: the warning names all parameters of the tissue, and none of the surface and the
+/// direction.
 TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const TestFolder folder("leaf_table");
   const std::string path = folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,551,.04,.1,.2\n");
@@ -321,7 +322,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
     EXPECT_TRUE(expected.contains(name));
 }
 
-/// The tables of a scene, by what they say of themselves.
+/// The tables of a scene, by their lines in the log.
 size_t tables_made(const std::vector<std::vector<ParsedParam>>& leaves) {
   const MaterialInfo& info = material_info("leaf_simplified");
   const auto strategy =

@@ -73,7 +73,7 @@ double error_of_formula(const char* file, const TrowbridgeReitz& facets, const V
   return std::sqrt(error / size);
 }
 
-// The remaining errors are those of the small grids of the files.
+// The remaining errors are caused by the small grids of the files.
 TEST(Measured, IsTheFormula) {
   EXPECT_LT(error_of_formula("metal", {0.4f, 0.4f}, direction({30, 40})), 0.015);
   EXPECT_LT(error_of_formula("metal", {0.4f, 0.4f}, direction({60, -100})), 0.025);

@@ -102,8 +102,8 @@ SampledSpectrum albedo(const Bsdf& bsdf, const Vec3& wo) {
   return sum;
 }
 
-/// Surfaces' lobes that the quadrature is too coarse for, too narrow or bright where they are cut, have a test of their
-/// own (tests/leaf/surface_scaling_test.cpp).
+/// Surface lobes for which this quadrature is too coarse (narrow, or bright at the cut) are tested in
+/// tests/leaf/surface_scaling_test.cpp.
 bool is_within_quadrature(const Case& c) {
   const auto* numbers = std::get_if<std::vector<double>>(&c.params.back().values);
   return c.params.back().name != "cuticleaspect" || !numbers || (numbers->front() >= 1 && numbers->front() <= 100);

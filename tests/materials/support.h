@@ -12,8 +12,8 @@
 
 namespace frond::test {
 
-/// Spectra are the numbers given; any material's name is that of a built-in material with its defaults; a float texture
-/// "0.5:2" is the ramp between these numbers.
+/// Spectra are the numbers given; the name of a material stands for a built-in material with its defaults; a float
+/// texture "0.5:2" is the ramp between these numbers.
 class Resolver final : public ParamResolver {
  public:
   std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location&) override {
@@ -86,7 +86,7 @@ class Ready {
   SampledWavelengths lambda_;
 };
 
-/// Made ready for one strategy after another, with what others share, a material is what it is alone.
+/// Prepared for one strategy after another, with shared data, a material must equal one that is prepared alone.
 inline void expect_sharing_changes_nothing(std::string_view material, const std::vector<ParsedParam>& params) {
   Resolver resolver;
   const MaterialInfo& info = material_info(material);

@@ -27,7 +27,7 @@ struct Means {
   }
 };
 
-// Two ways to draw from one density: by two angles whatever the cut, and by trials until one stands.
+// Two methods to sample one density: by two angles, and by rejection.
 TEST(SurfaceLobe, AnglesAndTrialsHaveTheSameMeans) {
   constexpr double kExponents[] = {0, 0.4, 1, 5, 10, 100};
   constexpr float kCosines[] = {1, 0.7f, 0.17f, 0.01f, -0.3f};

@@ -64,7 +64,7 @@ struct FromLight final : B {
   Lobes flags() const override { return B::flags() | Lobes::from_light; }
 };
 
-/// A lobe cos^e about the mirror direction; what falls below the horizon is lost, and the density says so.
+/// A lobe cos^e about the mirror direction; directions below the horizon are lost, and the density accounts for them.
 template <int exponent, int claimed_exponent = exponent>
 class NarrowLobe final : public Bsdf {
  public:
@@ -96,7 +96,7 @@ class NarrowLobe final : public Bsdf {
 using GoodNarrowLobe = NarrowLobe<1000>;
 using WrongExponent = NarrowLobe<1000, 900>;
 
-/// A mirror three times out of ten, an even reflection else.
+/// A mirror with probability 0.3, else a uniform reflection.
 class GoodCoatedDiffuse final : public Honest {
  public:
   explicit GoodCoatedDiffuse(const SampledWavelengths& lambda) : Honest(lambda, 0.7f, 0), mirror_(level(lambda, 1)) {}
@@ -229,7 +229,7 @@ struct NegativeF final : Honest {
   }
 };
 
-/// Goes on working for a lane that was retired; needs wavelengths with such a lane.
+/// Still scatters in a retired lane; needs wavelengths with such a lane.
 struct ThrowsAtGrazing final : Honest {
   explicit ThrowsAtGrazing(const SampledWavelengths& lambda) : Honest(lambda, 0.4f, 0.4f) {}
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {

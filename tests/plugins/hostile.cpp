@@ -5,8 +5,8 @@
 
 #include "core/plugin_module.h"
 
-/// Materials, textures, a light, a shape and a wavelength strategy that fail in the way that their "fault" names, as
-/// somebody else's shared object. With the fault "none" they work.
+/// Materials, textures, a light, a shape and a wavelength strategy that fail in the way that their "fault" names, in a
+/// shared object. With the fault "none" they work.
 namespace hostile {
 namespace {
 

@@ -1,6 +1,6 @@
 #include "core/plugin_module.h"
 
-/// A film, shapes, a light and an area light, right and wrong, as somebody else's shared object.
+/// A film, shapes, a light and an area light, correct and faulty ones, in a shared object.
 namespace frond::test {
 namespace {
 

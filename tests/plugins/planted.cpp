@@ -3,7 +3,7 @@
 #include "core/plugin_module.h"
 #include "core/texture.h"
 
-/// The materials that are wrong on purpose, as somebody else's shared object.
+/// The materials that are wrong on purpose, in a shared object.
 namespace frond::test {
 namespace {
 

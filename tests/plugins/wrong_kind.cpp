@@ -1,6 +1,6 @@
 #include "core/plugin_module.h"
 
-/// A material that calls itself something else.
+/// A material whose record states another kind.
 namespace {
 
 const frond::MaterialInfo kLost{{"light", "lost", "", "", {}}, nullptr};

@@ -145,7 +145,7 @@ TEST_F(Radiometry, TheMediumOfTheCameraIsNotThatOfTheSensor) {
   }
 }
 
-/// Walls that face the sun and turn their dark side on those who look from the other.
+/// Walls that face the sun; from the other side their dark side is visible.
 TEST_F(Radiometry, ANegativeZenithLooksFromTheSunsSide) {
   const std::string wall =
       "MakeNamedMaterial \"w\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 1 2500 1] NamedMaterial "
@@ -232,7 +232,8 @@ TEST_F(Radiometry, TheAlbedoIsTheSameFromTheSunAndFromTheSensor) {
   EXPECT_LT(std::hypot(error, sent.standard_error), 2e-3) << "the test has lost its power";
 }
 
-/// The same for leaves that are not reciprocal: whichever way light is followed, it meets them along its own way.
+/// The same for leaves that are not reciprocal: their incident direction is the light's, whichever way paths are
+/// traced.
 TEST_F(Radiometry, TheAlbedoOfRealLeavesIsTheSameBothWays) {
   const std::string world =
       kSun + soil(0.2) +

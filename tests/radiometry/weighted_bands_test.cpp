@@ -132,7 +132,7 @@ class WeightedBands : public ::testing::Test {
   TestFolder folder_{"weighted_bands"};
 };
 
-/// The definition: the share of a response's light, integral of R E s over that of R E.
+/// The definition: the share of a response's light, integral of R E s over integral of R E.
 template <class Light>
 double share(const Line& response, const Light& light) {
   const double from = response.points.front().first, to = response.points.back().first;
@@ -241,7 +241,7 @@ TEST_F(WeightedBands, NeedLight) {
                      {.wavelengths = bands({"nir"}), .irradiance = read_spd(path("short.spd"), {})}, 1);
               }),
               HasSubstr("the irradiance is known from 380 to 800 nm, band nir needs 700 to 2500 nm"));
-  // A light whose table ends inside a response is refused, for both: nothing is said of the wavelengths beyond.
+  // Both reject a light whose table ends inside a response: it does not define the light beyond.
   const std::string d65 = sun("\"stdillum-D65\"");
   EXPECT_THAT(error_of([&] { flux(d65, {.wavelengths = bands({"nir"})}, 1); }), HasSubstr("known from 360 to 830 nm"));
   EXPECT_THAT(error_of([&] { brf(d65, bands({"nir"})); }), HasSubstr("known from 360 to 830 nm"));

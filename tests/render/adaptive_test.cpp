@@ -16,7 +16,7 @@ namespace {
 
 using testing::SceneRender;
 
-/// Asks for a stop after so many reports, as a signal would.
+/// Requests a stop after a number of reports, as a signal would.
 class StopAfter final : public Progress {
  public:
   explicit StopAfter(int reports) : left_(reports) {}
@@ -62,7 +62,7 @@ class Adaptive : public ::testing::Test {
   Session session_{silent_log(), {.threads = 2}};
 };
 
-/// Mean square of what two images differ by, over pixels and colours.
+/// Mean square difference of two images, over pixels and colours.
 double square_difference(const Film& a, const Film& b) {
   const Crop& c = a.settings().crop;
   double sum = 0;
@@ -199,7 +199,7 @@ TEST_F(Adaptive, AfterTheDeadlineHalvesRemain) {
   EXPECT_EQ(part.film, in_halves(scene, 64).film);
 }
 
-/// Ends a render after so many reports, and again and again, until there is no more to do. `on(part, control)` renders.
+/// Stops a render after a number of reports, repeatedly, until it is complete. `on(part, control)` renders.
 RenderPart in_pieces(const LoadedScene& scene, int reports, const auto& on) {
   RenderPart part = scene.empty_part();
   for (int i = 0; i < 10000; ++i) {

@@ -30,7 +30,7 @@ TEST(PartLocks, HoldOffOthersUntilTheyAreGone) {
   EXPECT_THAT(error_of([&] { const PartLock none(folder.name_of("none/a.part")); }), HasSubstr("cannot write"));
 }
 
-/// Also where one opens the file that another is about to take away.
+/// Also if one process opens the file while another one deletes it.
 TEST(PartLocks, AreHeldByOneAtATime) {
   const TestFolder folder("lock");
   const fs::path part = folder.name_of("a.part");
@@ -136,7 +136,8 @@ TEST_F(Checkpoints, OfARenderAtWorkCanBeGoneOnFrom) {
 /// A checkpoint contains samples of one plan only: with samples of the next plan, the next plan would be computed again
 /// with another result.
 TEST_F(Checkpoints, OfAnAdaptiveRenderAreOfOnePlan) {
-  // The sky, which needs little, comes first: what needs more has it before the checkpoint gets there.
+  // The sky, which needs few samples, comes first: pixels that need more have them before the checkpoint is written
+  // there.
   scene_ = folder_.write("tall.pbrt", testing::a_scene("", 40, 600));
   const LoadedScene scene =
       SceneRender{.wavelengths = "smpte", .channels = {"normal", "position"}, .adaptive = true}.load(session_, scene_);

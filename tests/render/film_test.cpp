@@ -61,7 +61,7 @@ TEST(Film, FilterWeightsOfFewSamplesCannotVanish) {
   for (const double weight : {1.5, -0.5, 1.5, 1.5}) {
     film.add(0, 0, response({{weight < 0 ? uint16_t{1} : uint16_t{0}, 2}}), weight, false);
   }
-  // A band's samples are divided by their number times what a sample weighs on the whole: here 1.
+  // A band's samples are divided by their number times the mean weight of a sample, here 1.
   EXPECT_NEAR(film.band_mean(0, 0, 0).mean, 3, 1e-15);
   EXPECT_NEAR(film.band_mean(0, 0, 1).mean, -1, 1e-15);
 }

@@ -60,7 +60,7 @@ TEST_F(Gbuffer, HasTheNamesOfPbrt) {
   for (const char* name : {"albedo.R", "normal.X"}) EXPECT_THAT(image.channels, Not(Contains(name)));
 }
 
-/// On the floor, whose front is below: the variance of samples is that of their mean times their number.
+/// On the floor, whose front is below: the variance of samples is the variance of their mean times their number.
 TEST_F(Gbuffer, HasTheValuesOfTheHit) {
   const Image image = render();
   const auto at = [&](const char* name) { return double(image.at(20, 25, *image.channel(name))); };

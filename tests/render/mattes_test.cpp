@@ -78,7 +78,8 @@ TEST(Cryptomatte, HashIsThePublicOne) {
   EXPECT_TRUE(std::isnormal(matte_id("")));  // 0 would be denormal
 }
 
-/// Light that reaches the film comes past the disks: what they cover is missing in the colours, weight by weight.
+/// Light reaches the film only beside the disks: their coverage equals the missing share of the colours, weight by
+/// weight.
 TEST_F(Mattes, AlphaHasTheFilterOfTheColors) {
   for (const char* filter : {"gaussian", "gaussian,reconstruction=importance", "box", "triangle,xradius=1.3"}) {
     const RenderPart rendered = part({.wavelengths = "smpte", .filter = filter});
@@ -188,7 +189,7 @@ TEST_F(Mattes, AHiddenBackgroundLights) {
   }
 }
 
-/// Four wavelengths of a sample have a colour outside the space of R, G and B; those of a saturated surface too.
+/// Four wavelengths of a sample have a colour outside the space of R, G and B; so do samples of a saturated surface.
 TEST(AlbedoChannel, LiesBetween0And1) {
   const TestFolder folder("albedo");
   std::string text = testing::a_scene();

@@ -256,7 +256,7 @@ TEST_F(Parts, WithAnyByteFlippedTheyAreNotReadAsSomethingElse) {
   };
   for (int i = 0; i < 1000; ++i)
     flip(random() % bytes.size(), static_cast<unsigned char>(i % 2 ? 1 << random() % 8 : 1 + random() % 255));
-  // Where the sums begin, each bit says something else: of the compressor's frame there are two that mean nothing.
+  // At the beginning of the sums each bit is significant, except for two bits in the frame of the compressor.
   const std::string text(bytes.begin(), bytes.end());
   const size_t frame = text.find("\x28\xb5\x2f\xfd");
   ASSERT_NE(frame, std::string::npos);
@@ -284,7 +284,7 @@ TEST_F(Parts, WhatIsNoneOrOfAnotherVersionIsRefused) {
   EXPECT_THAT(error_of([this] { merge_parts({path("scene.pbrt")}); }), HasSubstr("not a part file"));
 }
 
-/// An adaptive render keeps more than another.
+/// A part of an adaptive render contains more data.
 TEST_F(Parts, WithAndWithoutNoiseDoNotGoTogether) {
   const RenderPart plain = part({16, 32}), adaptive = part({0, 16}, {.adaptive = true});
   for (const std::string& said : {refusal(plain, adaptive), refusal(adaptive, plain)})
@@ -335,7 +335,7 @@ TEST_F(Parts, ForgedHeadersAreDamaged) {
   EXPECT_THAT(refusal(number_of("correlated_pixels"), "\"correlated_pixels\": 1e30"), HasSubstr("is damaged"));
 }
 
-/// A header can claim any size; memory is taken for what the sums can hold.
+/// A header can state any size; memory is allocated only for what the sums can contain.
 TEST_F(Parts, ClaimsOfManyPixelsAreDamage) {
   const RenderPart small = part({0, 4});
   const FilmSettings& film = small.film.settings();

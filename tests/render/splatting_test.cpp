@@ -39,7 +39,7 @@ class MadeUp {
   MadeUp(const Filter& filter, int width, int height, size_t bands = 0, bool halves = false)
       : kernel_(filter), film_(format_of(kernel_, width, height, bands, halves)) {}
 
-  /// `samples` of each pixel of a tile; sample(x, y, index) says where in its pixel a sample lies and what it sees.
+  /// `samples` of each pixel of a tile; sample(x, y, index) returns a sample's position in its pixel and its value.
   struct Seen {
     Vec2 u;
     SensorResponse response;
@@ -157,7 +157,7 @@ TEST(Splatting, WeightsAreTheFiltersAndAverageToWhatIsSaid) {
   }
 }
 
-/// An edge, and a ramp, seen by evenly spread samples: pixels are what the filter makes of them, by either way.
+/// An edge, and a ramp, seen by evenly spread samples: pixels equal the filtered values with either reconstruction.
 TEST(Splatting, BlursAsTheFilterDoes) {
   constexpr uint64_t kSide = 16;
   for (const std::string_view name : kWideFilters) {
@@ -180,7 +180,7 @@ TEST(Splatting, BlursAsTheFilterDoes) {
         const auto [offset, weight] = filter->sample({(float(i) + 0.5f) / kFine, 0.5f});
         weights += double(weight), importance += x + 0.5 + double(offset.x) < kEdge ? double(weight) : 0;
       }
-      // The grid of splats puts the edge up to half a step off, and so does that of importance samples.
+      // The grid of splats moves the edge by up to half a step, and so does the grid of importance samples.
       EXPECT_NEAR(edge.film().mean(x, 1)[0], expected, 0.04) << name << x;
       EXPECT_NEAR(importance / weights, expected, 0.04) << name << x;
       EXPECT_NEAR(ramp.film().mean(x, 1)[0], x + 0.5, 1e-3) << name << x;
@@ -285,7 +285,7 @@ TEST(Splatting, OneSampleAPixelTellsNoVariance) {
 }
 
 TEST(Splatting, NoiseIsLessThanOfSamplesOfTheirOwn) {
-  // Per sample, of a box filter's: what the page on filters says.
+  // Variance per sample relative to a box filter's, as the page on filters states it.
   const auto factor = [](std::string_view name) {
     const Splatting s = SplatKernel(*make(name)).splatting();
     double mean = 0, square = 0;
@@ -312,7 +312,7 @@ std::vector<float> noise_field(const Filter& filter, int size, uint64_t seed) {
   return field;
 }
 
-/// Where there is no bias, what is found of it is noise: its standard error must not be too small.
+/// Without bias, the estimated bias is noise: its standard error must not be too small.
 TEST(Splatting, StandardErrorsKnowThatPixelsShareTheirNoise) {
   constexpr int kSize = 16, kFields = 300;
   const auto filter = make("gaussian");

@@ -1,4 +1,4 @@
-// Instances of objects: tables as files, and what rays meet in them, against the same surfaces written out.
+// Instances of objects: tables as files, and intersections, compared with the same surfaces without instances.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class Instances : public ::testing::Test {
  protected:
   fs::path file(const std::string& name) const { return folder_.name_of(name); }
   fs::path write(const std::string& name, const std::string& bytes) const { return folder_.write(name, bytes); }
-  /// As numpy.save writes it: the header is its own text.
+  /// A file as numpy.save writes it, with this header.
   fs::path write_npy(const std::string& name, const std::string& dict, const std::vector<float>& numbers) const {
     std::string header = dict + std::string(64 - (10 + dict.size() + 1) % 64, ' ') + '\n';
     std::string bytes = "\x93NUMPY";
@@ -124,7 +124,7 @@ TEST_F(Instances, BadFilesAreRefusedByName) {
               HasSubstr("row 1"));
 }
 
-/// Headers whose sizes overflow or are no sizes.
+/// Headers with sizes that overflow or are invalid.
 TEST_F(Instances, SizesThatNoFileHasAreRefused) {
   const auto error = [this](const std::string& descr, const std::string& shape) {
     const std::string dict = fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': {}, }}", descr, shape);
@@ -190,7 +190,7 @@ void for_each_ray(const Look& look) {
   }
 }
 
-/// Instances must be met where their surfaces, written out, are: hits and shadows alike.
+/// Hits and shadows of instances must equal those of the same surfaces without instances.
 void expect_same(const Scene& instances, const Scene& written_out) {
   int hits = 0, differ = 0;
   for_each_ray([&](const Ray& ray, uint64_t key) {
@@ -216,7 +216,7 @@ void expect_same(const Scene& instances, const Scene& written_out) {
   EXPECT_LE(differ, 4);
 }
 
-/// Rays in packets meet what each meets alone, with the lanes that are not there left as they are.
+/// Rays in packets have the same hits as single rays, and missing lanes are unchanged.
 void expect_same_in_packets(const Scene& scene) {
   RandomStream random(5);
   const auto uniform = [&](float least, float most) { return least + (most - least) * random.uniform(); };

@@ -33,7 +33,7 @@ TEST_F(LeafModels, FollowFromTheRecords) {
 }
 
 TEST_F(LeafModels, AMixtureIsALeafIfItMixesOne) {
-  // Mixtures may name what is defined later, and each other.
+  // Mixtures may name materials that are defined later, and each other.
   const SceneDescription d = described(R"(
 MakeNamedMaterial "twice" "string type" "mix" "string materials" ["half" "stone"]
 MakeNamedMaterial "half" "string type" "mix" "string materials" ["stone" "blade"]

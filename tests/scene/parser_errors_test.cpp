@@ -196,7 +196,7 @@ ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 -3 1 ] ObjectInstance "o"
 CoordinateSystem "c" CoordSysTransform "c" ReverseOrientation LightSource "point" "spectrum I" "stdillum-D65"
 )";
 
-/// Parses or throws InputError; anything else gets out and fails the test.
+/// Parses or throws InputError; any other exception fails the test.
 void parse_anything(const std::string& text) {
   error_of([&] { parse_scene_text(text, "fuzz", silent_log()); });
 }
@@ -228,7 +228,7 @@ TEST(ParserErrors, IncludedFilesHaveALimitInAll) {
               testing::HasSubstr("the scene includes more than 20000 files, each counted as often as it is included"));
 }
 
-/// Took a time quadratic in their number; 30,000 took 15 s, a million would take hours.
+/// Once took time quadratic in their number: 30,000 took 15 s, a million would have taken hours.
 TEST(ParserErrors, AMillionRepeatedParametersAreRead) {
   std::string text = "Camera \"perspective\"";
   for (int i = 0; i < 1'000'000; ++i) text += " \"float a\" 1";

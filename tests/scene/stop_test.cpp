@@ -1,4 +1,4 @@
-// Long steps of loading a scene end when a stop is requested: each is called with a request that is there before.
+// Long steps of loading a scene end when a stop is requested. The stop is requested before each call.
 
 #include "core/stop.h"
 

@@ -269,7 +269,7 @@ TEST(Ply, ReadsFilesAndNamesThoseItCannotRead) {
               StartsWith(folder.name_of("bad.ply:1:1: ")));
 }
 
-/// Reads or throws InputError; anything else gets out and fails the test.
+/// Reads or throws InputError; any other exception fails the test.
 void read_anything(const std::string& text) {
   error_of([&] {
     const PlyMesh file = read(text);

@@ -1,4 +1,5 @@
-// Shapes as pbrt-v4 has them: what rays meet, and the light that they give off against what rays find of it.
+// Shapes of pbrt-v4: intersections of rays, and emitted light by light samples against the light that scattered rays
+// hit.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -250,7 +251,7 @@ TEST_F(Shapes, AnEmitterOfNoOpacityLightsAllTheSame) {
   EXPECT_TRUE(s->lights()[0]->is_delta()) << "no scattered ray competes with its samples";
   const Irradiance none = irradiance(*s);
   EXPECT_EQ(none.met, 0);
-  // From the same random numbers, so it is rounding that is left room.
+  // With the same random numbers, so the tolerance is for rounding.
   EXPECT_NEAR(none.sampled, full.sampled, 0.005 * full.sampled);
   EXPECT_FALSE(s->occluded({{0, 0, 0}, {0, 0, 4}, 1}, 1));
 }
@@ -349,7 +350,7 @@ TEST_F(Shapes, SubdivisionLeadsToLoopsLimit) {
     EXPECT_EQ(subdivide(cage, faces, levels, mesh), "");
     EXPECT_EQ(mesh.triangles.size(), faces.size() << (2 * levels));
     EXPECT_EQ(mesh.p.size(), mesh.triangles.size() / 2 + 2) << "Euler's formula";
-    // A corner of four neighbours lies half way to their mean in the limit.
+    // A vertex with four neighbours moves halfway to their mean in the limit.
     for (size_t i = 0; i < 6; ++i) {
       const auto at = std::ranges::find_if(mesh.p, [&](const Vec3& p) { return length(p - cage[i] * 0.5f) < 1e-6f; });
       ASSERT_NE(at, mesh.p.end()) << levels;
@@ -460,7 +461,7 @@ TEST_F(Shapes, OddInputIsNamed) {
             "levels\" 12 Shape \"loopsubdiv\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0] \"integer indices\" [0 1 2 "
             "1 3 2] \"integer levels\" 12"),
       HasSubstr("12 levels make 3.36e+07 triangles, of some 6 GB"));
-  // Curves of no width or length, and quadrics of no radius, are not there; nothing else comes of them.
+  // Curves without width or length, and quadrics without radius, have no intersections and cause no error.
   const auto s = scene(
       "Shape \"curve\" \"float width\" 0 \"point3 P\" [0 0 0  1 0 0  2 0 0  3 0 0] "
       "Shape \"curve\" \"point3 P\" [0 0 0  0 0 0  0 0 0  0 0 0] "

@@ -217,8 +217,8 @@ TEST_F(Responses, ArePaddedWithAnyNumberOfZeros) {
     const auto mean = [&](int power) {
       return midpoint_mean(c.points, [&](double nm) { return std::pow((nm - c.points.front().nm) / width, power); });
     };
-    // x and its square rise with u, from 0 to 1: the mean of their midpoints is off by half a step at most. Half a
-    // float's step of wavelength comes to it, and what midpoint_mean's steps leave.
+    // x and its square rise with u, from 0 to 1: the mean of their midpoints is off by half a step at most. To this are
+    // added half a float's spacing of the wavelength and the error of midpoint_mean's steps.
     const double rounding = 6.2e-5 / width + 1e-6;
     EXPECT_NEAR(first / kSamples, mean(1), 0.5 / kSamples + rounding) << c.text.substr(0, 60);
     EXPECT_NEAR(second / kSamples, mean(2), 0.5 / kSamples + 2 * rounding) << c.text.substr(0, 60);

@@ -36,7 +36,7 @@ void expect_chromaticity(const Spectrum& s, double x, double y, double tolerance
   EXPECT_NEAR(xyz[1] / sum, y, tolerance);
 }
 
-// Tolerances are what five nanometres and the rounding of the tables leave.
+// Tolerances allow for steps of five nanometres and the rounding of the tables.
 TEST(Cie, IlluminantsHaveTheirPublishedChromaticities) {
   expect_chromaticity(*d65(), 0.31272, 0.32903, 3e-5);
   expect_chromaticity(*illuminant_a(), 0.44758, 0.40745, 3e-5);

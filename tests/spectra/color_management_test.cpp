@@ -196,7 +196,7 @@ colorspaces: [!<ColorSpace> {name: ACES2065-1}]
   for (size_t i = 0; i < ours.size(); ++i) EXPECT_NEAR(double(theirs[i]), double(ours[i]), 2e-5) << i;
 }
 
-/// OpenColorIO has configurations of its own since 2.2; before, the message says so.
+/// OpenColorIO has built-in configurations since 2.2; with older versions, the message says so.
 TEST_F(ColorManagement, OpenColorIOsOwnConfigurations) {
   if (OCIO_NAMESPACE::GetVersionHex() < 0x02020000) {
     EXPECT_THAT(error_of([] { ColorManager("ocio://default"); }),

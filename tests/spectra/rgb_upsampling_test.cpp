@@ -76,7 +76,7 @@ void expect_round_trip(const char* name) {
 TEST(RgbAlbedo, ColorsComeBackInSrgb) { expect_round_trip("srgb"); }
 TEST(RgbAlbedo, ColorsComeBackInSmpteC) { expect_round_trip("smpte-c"); }
 
-/// Pure colours of wide spaces have edges that 1 nm nodes do not follow: what that adds to a fit's error, in XYZ.
+/// Additional error of a fit, in XYZ: pure colours of wide spaces have edges that nodes of 1 nm do not resolve.
 constexpr double kSteepEdges = 2.5e-3;
 
 TEST(RgbAlbedo, ColorsOfWideSpacesComeBackOrAreTold) {

@@ -88,7 +88,7 @@ TEST_F(SpdFile, TablesThatAreNoSpectrumAreRefused) {
   EXPECT_THAT(error(",R\n1,.2\n2,.3\n"), HasSubstr("no column of wavelengths"));
 }
 
-/// Any file can be named as a spectrum: messages do not quote what it holds.
+/// A scene can name any file as a spectrum: messages do not quote the file's content.
 TEST_F(SpdFile, MessagesDoNotQuoteOtherFiles) {
   for (const char* text : {"root:secret:1:0\nbin:secret:2\n", "a secret file\nof words\n", "secret,b,c\nd,e,f\n"})
     EXPECT_THAT(error(text), Not(HasSubstr("secret"))) << text;

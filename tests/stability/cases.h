@@ -12,7 +12,7 @@ Theme ends_of_ranges();
 Theme outside_ranges();
 /// No absorption and complete absorption.
 Theme absorption();
-/// Refractive indices outside those of leaves.
+/// Refractive indices outside the range of leaves.
 Theme indices();
 /// Four wavelengths on one walk.
 Theme dispersion();

@@ -25,8 +25,8 @@ class Files {
  public:
   explicit Files(Theme& theme) : theme_(theme) {}
 
-  /// Adds a case of a table of a constant f. R and T by integration and by samples must be those of `expected` at all
-  /// angles, to the horizon on both sides.
+  /// Adds a case of a table of a constant f. R and T by integration and by samples must equal `expected` at all angles,
+  /// to the horizon on both sides.
   void holds(std::string name, const GoniometerAngles& angles, Constant given, Constant expected) {
     const auto f = [given](double incidence, double theta, double, double) { return given.f(incidence, theta); };
     Comparison comparison(2e-5);

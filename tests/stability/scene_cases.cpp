@@ -94,7 +94,7 @@ Cell furnace(const Leaf& leaf, bool direct) {
   return comparison.cell();
 }
 
-/// Shading normals tilted by an angle must not increase the light above that of the sky.
+/// Shading normals tilted by an angle must not increase the light above the sky's.
 Cell bent(const Leaf& leaf, double lean_deg) {
   const Sheet sheet{.material = leaf.material + " \"float mesophyllfraction\" 0", .normals = leaning(lean_deg)};
   const Film film = render_text(sheet.text(), {.samples = kSamples});

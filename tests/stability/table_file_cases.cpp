@@ -27,7 +27,7 @@ class Files {
                                      part, [&] { open(file, nm); }, folder_.name_of("")));
   }
 
-  /// Adds a case of an accepted file whose shares at the angles of `lit` must be those of `lit`.
+  /// Adds a case of an accepted file whose shares at the angles of `lit` must equal `lit`.
   void holds(std::string name, std::string expected, std::string_view rows, const Lit& lit, double nm = 551) {
     Comparison comparison(2e-4);
     const std::string file = folder_.write("t.csv", std::string(kHead) + std::string(rows)).string();

@@ -46,7 +46,7 @@ class Choosing : public ::testing::Test {
 
 const std::string kSmpte = "Option \"string wavelengths\" \"smpte\"\n";
 const std::vector<std::string> kPilot{"--wavelengths", "smpte", "--pilot", "--json", "-"};
-/// A long render, for which a pilot pays, that its noise target ends early.
+/// A long render, which is worth a pilot and which its noise target ends early.
 const std::vector<std::string> kLong{"--wavelengths", "smpte", "--spp", "1e5", "--max-rms", "0.3"};
 
 nlohmann::json choice_of(const Outcome& o) {
@@ -226,7 +226,7 @@ TEST_F(Choosing, TheDeadlineEndsAPilotAtAnyMoment) {
   EXPECT_GT(out_of_time, 0);
 }
 
-/// A cheap model that is wrong stands at the foot of the ladder.
+/// A cheap and wrong model is the first of the ladder.
 TEST_F(Choosing, AWrongModelIsNotChosenHoweverCheap) {
   const MaterialInfo wrong = test::planted<test::GoodLambertian>("planted_wrong");
   Session session(silent_log(), {.threads = 2});
@@ -256,7 +256,7 @@ TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
   EXPECT_EQ(choice.answers[1].chosen, "leaf_lambert");
 }
 
-/// Walks cannot be: the solution of them is what counts as right.
+/// Walks cannot be made reciprocal: their solution counts as exact.
 TEST_F(Choosing, AReciprocalLeafIsHeldToTheSolvedOne) {
   Session session(silent_log(), {.threads = 2});
   SceneDescription description = session.read(folder_.write("scene.pbrt", kSmpte + two_leaves("", "")));

@@ -24,7 +24,8 @@ TEST(UnshotRatio, IsWhatWaitsOverWhatWasShot) {
   EXPECT_DOUBLE_EQ(unshot_ratio(some_ends(), 1.5).value, std::sqrt(60.5 / 100 * 30.5 / 160));
 }
 
-/// Few of many paths go on, a tenth each time; over many such counts the logarithm scatters as it says.
+/// Few of many paths go on, a tenth each time; over many such counts the spread of the logarithm equals its stated
+/// error.
 TEST(UnshotRatio, KnowsItsError) {
   constexpr int kRuns = 1000;
   RandomStream random(7);

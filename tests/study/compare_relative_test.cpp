@@ -73,7 +73,7 @@ TEST_F(CompareRelative, ErrorsAreOverTheReferencesMeanOfTheSamePixelsAndBand) {
   };
   const std::map<std::string, std::array<double, 2>> expected{
       {"leaf", {0.04 / 0.4, 0.08 / 0.32}},
-      // Half of the pixels are wrong, and the mean is that of leaf and floor.
+      // Half of the pixels are wrong, and the mean includes leaf and floor.
       {"all", {0.04 * std::sqrt(0.5) / 0.3, 0.08 * std::sqrt(0.5) / 0.26}}};
   for (const auto& [region, errors] : expected) {
     for (const char* figure : {"rms", "bias"}) {

@@ -5,7 +5,7 @@
 
 namespace frond {
 
-/// Whether tests that take minutes are to run too.
+/// Whether tests that take minutes run too.
 inline bool slow_tests() {
   const char* wish = std::getenv("FROND_SLOW_TESTS");
   return wish && std::string_view(wish) == "1";

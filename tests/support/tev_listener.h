@@ -78,7 +78,7 @@ class TevListener {
 
   std::string address() const { return port_.address(); }
   uint16_t port() const { return port_.number(); }
-  /// To be called once the other side is done. What came is known then.
+  /// To be called after the client has finished. All received packets are then available.
   void join() {
     ended_ = true;
     if (thread_.joinable()) thread_.join();
@@ -90,7 +90,7 @@ class TevListener {
   size_t bytes() const { return bytes_; }
 
  private:
-  /// Reads what a packet says, and notes where it ends too soon.
+  /// Reads the content of a packet, and records a premature end.
   class Reader {
    public:
     Reader(const std::vector<unsigned char>& bytes, size_t at, size_t end) : bytes_(bytes), at_(at), end_(end) {}

@@ -15,7 +15,7 @@
 namespace frond {
 namespace {
 
-/// Runs `command` attached in a process of its own, whose standard output is a pipe, and sends that process `signal` as
+/// Runs `command` attached in a separate process, whose standard output is a pipe, and sends that process `signal` as
 /// soon as the command has written something. Returns the status of that process: the exit code that the child's end
 /// gives, or 100.
 int status_after(int signal, const std::string& script) {
