@@ -6,8 +6,7 @@
 
 #include "image/image_file.h"
 #include "image/spectral_layout.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -26,7 +25,7 @@ TEST(SpectralChannels, AreNamedAfterTheLayout) {
 }
 
 /// A plate that fills the view and reflects half at 900 nm and 0.1 below 700, in equal-energy light from everywhere.
-class BandCommands : public ::testing::Test {
+class BandCommands : public CommandTest {
  protected:
   void SetUp() override {
     setenv("SOURCE_DATE_EPOCH", "0", 1);
@@ -43,17 +42,12 @@ Shape "disk" "float radius" 9
 )");
     folder_.write("nir.spd", "840 0  850 1  950 1  960 0");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  Outcome render(const std::string& wavelengths, const std::string& output, std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"render", path("scene.pbrt"), "--no-cache",    "-q",
-                                       "-o",     path(output),       "--wavelengths", wavelengths};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return frond_command(arguments);
+  Outcome render(const std::string& wavelengths, const std::string& output, const Words& more = {}) const {
+    return frond_command(
+        {"render", path("scene.pbrt"), "--no-cache", "-q", "-o", path(output), "--wavelengths", wavelengths}, more);
   }
   /// Radiance of a white plate in this light.
   static double white() { return 1 / 106.856895; }  // over the integral of ybar
-
-  TestFolder folder_{"bands"};
 };
 
 TEST_F(BandCommands, GiveOneChannelForEachBandAndReadBack) {

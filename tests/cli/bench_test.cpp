@@ -3,9 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "system/child_process.h"
-#include "tests/cli/command.h"
 #include "tests/cli/table.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// `frond bench`. tests/instruments tests variances. No test here depends on measured times.
 namespace frond {
@@ -20,17 +19,14 @@ using ::testing::Not;
 using testing::StartsWith;
 using Json = nlohmann::json;
 
-/// The shortest run.
-Outcome bench(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "bench");
-  arguments.insert(arguments.end(),
-                   {"--no-cache", "--min-time", "1e-6", "--repetitions", "2", "--samples", "2000", "--threads", "2"});
-  return frond_command(std::move(arguments));
+/// As short as can be.
+Outcome bench(const Words& arguments) {
+  return frond_command(joined({"bench"}, arguments), {"--no-cache", "--min-time", "1e-6", "--repetitions", "2",
+                                                      "--samples", "2000", "--threads", "2"});
 }
 
-Json json_of(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--json", "-", "-q"});
-  const Outcome o = bench(std::move(arguments));
+Json json_of(const Words& arguments) {
+  const Outcome o = bench(joined(arguments, {"--json", "-", "-q"}));
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, AnyOf(IsEmpty(), StartsWith("warning: the machine is busy")));
   return Json::parse(o.out);

@@ -16,9 +16,8 @@
 #include "jobs/record/common_params.h"
 #include "render/plugins.h"
 #include "scene/format/unsupported.h"
-#include "tests/cli/command.h"
 #include "tests/cli/table.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -28,7 +27,7 @@ using ::testing::IsEmpty;
 using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
-class Commands : public ::testing::Test {
+class Commands : public CommandTest {
  protected:
   void SetUp() override {
     setenv("SOURCE_DATE_EPOCH", "0", 1);
@@ -44,20 +43,12 @@ NamedMaterial "thing"
 Shape "sphere" "float radius" .5
 )");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  Outcome render(std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"render", path("scene.pbrt"), "--no-cache"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return frond_command(arguments);
-  }
+  Outcome render(const Words& more) const { return frond_command({"render", path("scene.pbrt"), "--no-cache"}, more); }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_.name_of(".")))
-      names.push_back(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(path("."))) names.push_back(entry.path().filename().string());
     return names;
   }
-
-  TestFolder folder_{"cli"};
 };
 
 TEST(IgnoreUnsupported, ItsDocNamesEveryKind) {
@@ -177,8 +168,8 @@ Translate .5 .5 .1
 ObjectInstance "leaf"
 )");
   const auto flux = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"flux", path("plate.pbrt"), "--paths", "4096", "--wavelengths", "400:700:50", "-q"});
-    const Outcome o = frond_command(words);
+    const Outcome o =
+        frond_command({"flux", path("plate.pbrt"), "--paths", "4096", "--wavelengths", "400:700:50", "-q"}, words);
     EXPECT_EQ(o.code, 0) << o.err;
     return o.out;
   };
@@ -448,7 +439,7 @@ TEST_F(Commands, AnImageSaysThroughWhichViewItWasMade) {
 
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   const auto before = files();
-  for (const std::string& output : {path("no/such/folder.exr"), path("image.xyz"), folder_.name_of(".")}) {
+  for (const std::string& output : {path("no/such/folder.exr"), path("image.xyz"), path(".")}) {
     const Outcome o = render({"-o", output, "--spp", "100000000"});  // would take days
     EXPECT_EQ(o.code, 1) << output;
     EXPECT_THAT(o.err, ::testing::Not(IsEmpty()));
@@ -466,10 +457,9 @@ TEST_F(Commands, NoInputIsReplacedAndNoFileIsWrittenTwice) {
   };
   const std::string before = text_of(scene);
   fs::create_symlink(scene, path("link.csv"));
-  const std::vector<std::string> brf{"brf", scene, "--no-cache", "--wavelengths", "550", "--paths", "64"};
-  const auto refusal = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), brf.begin(), brf.end());
-    const Outcome o = frond_command(more);
+  const Words brf{"brf", scene, "--no-cache", "--wavelengths", "550", "--paths", "64"};
+  const auto refusal = [&](const Words& more) {
+    const Outcome o = frond_command(brf, more);
     EXPECT_EQ(o.code, 1);
     return o.err;
   };
@@ -520,9 +510,8 @@ TEST_F(Commands, SeveralScenesAreCheckedBeforeTheFirstIsRendered) {
 }
 
 TEST_F(Commands, ContradictionsAreErrors) {
-  const auto refusal = [this](std::vector<std::string> more) {
-    more.insert(more.end(), {"-o", path("x.exr"), "-q"});
-    const Outcome o = render(more);
+  const auto refusal = [this](const Words& more) {
+    const Outcome o = render(joined(more, {"-o", path("x.exr"), "-q"}));
     EXPECT_EQ(o.code, 1);
     return o.err;
   };
@@ -663,9 +652,7 @@ TEST_F(Commands, NumbersThatAreNoneAreRefused) {
                                              {"--spp", "1e30"},
                                              {"--spp", "-3"},
                                              {"--threads", "100000"}}) {
-    std::vector<std::string> more{"-o", path("x.exr")};
-    more.insert(more.end(), option.begin(), option.end());
-    EXPECT_EQ(render(more).code, 1) << option[0] << option[1];
+    EXPECT_EQ(render(joined({"-o", path("x.exr")}, option)).code, 1) << option[0] << option[1];
   }
   EXPECT_FALSE(fs::exists(path("x.exr")));
 }

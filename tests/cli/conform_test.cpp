@@ -7,8 +7,7 @@
 #include "image/image_file.h"
 #include "instruments/conformance/conformance.h"
 #include "report/chart.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// `frond conform`; that each law can fail, and none does for long, is tested in tests/laws.
 namespace frond {
@@ -19,14 +18,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-Outcome conform(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {"conform", "--samples", "2000", "--angles", "0,60"});
-  return frond_command(std::move(arguments));
+Outcome conform(const Words& arguments) {
+  return frond_command({"conform", "--samples", "2000", "--angles", "0,60"}, arguments);
 }
 
-Outcome conform_planted(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--plugin", FROND_TEST_PLUGINS "/planted.so"});
-  return conform(std::move(arguments));
+Outcome conform_planted(const Words& arguments) {
+  return conform(joined(arguments, {"--plugin", FROND_TEST_PLUGINS "/planted.so"}));
 }
 
 TEST(Conform, LawfulMaterialsPass) {
@@ -119,9 +116,9 @@ TEST(Conform, RefusedEndsAreCounted) {
 
 /// 2,000 samples alone would miss 5 %: the law of energy draws more, unless --excess forbids it.
 TEST(Conform, FewSamplesAreEnoughOrSaySo) {
-  const auto energy = [](std::vector<std::string> more) {
-    more.insert(more.begin(), {"abm,specimen=soybean", "--given-only", "--lossless", "--json", "-"});
-    return nlohmann::json::parse(conform(more).out)["laws"][size_t(Law::energy)];
+  const auto energy = [](const Words& more) {
+    const Words words = joined({"abm,specimen=soybean", "--given-only", "--lossless", "--json", "-"}, more);
+    return nlohmann::json::parse(conform(words).out)["laws"][size_t(Law::energy)];
   };
   EXPECT_LE(energy({})["detectable"], 0.05);
   EXPECT_GT(energy({"--excess", "0"})["detectable"], 0.05);

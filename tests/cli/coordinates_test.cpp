@@ -7,8 +7,7 @@
 #include <fstream>
 
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -38,18 +37,15 @@ std::string leaves(double x, double y, double z) {
   return text;
 }
 
-class Coordinates : public ::testing::Test {
+class Coordinates : public CommandTest {
  protected:
-  Image rendered(const std::string& name, const std::string& scene, std::vector<std::string> more = {}) {
+  Image rendered(const std::string& name, const std::string& scene, const Words& more = {}) {
     folder_.write(name + ".pbrt", scene);
-    std::vector<std::string> words{"render", folder_.name_of(name + ".pbrt"), "-o", folder_.name_of(name + ".exr")};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome done = frond_command(words);
+    const Outcome done = frond_command({"render", path(name + ".pbrt"), "-o", path(name + ".exr")}, more);
     EXPECT_EQ(done.code, 0) << done.err;
     said_ = done.err;
-    return read_image(folder_.name_of(name + ".exr"), {}).image;
+    return read_image(path(name + ".exr"), {}).image;
   }
-  TestFolder folder_{"coordinates"};
   std::string said_;
 };
 
@@ -85,8 +81,8 @@ TEST_F(Coordinates, PositionsAreRelativeToTheOriginOfTheHeader) {
   const Image here = rendered("here", leaves(0, 0, 0), {"--channels", "position"});
   const Image there = rendered("there", leaves(500000, 5200000, 312), {"--channels", "position"});
   EXPECT_EQ(here.pixels, there.pixels);
-  EXPECT_EQ(read_image(folder_.name_of("there.exr"), {}).header.text.at("frond:origin"), "500000 5200000 312");
-  EXPECT_FALSE(read_image(folder_.name_of("here.exr"), {}).header.text.contains("frond:origin"));
+  EXPECT_EQ(read_image(path("there.exr"), {}).header.text.at("frond:origin"), "500000 5200000 312");
+  EXPECT_FALSE(read_image(path("here.exr"), {}).header.text.contains("frond:origin"));
 }
 
 TEST_F(Coordinates, RadiometersTakeTargetsInMapCoordinates) {
@@ -95,8 +91,8 @@ TEST_F(Coordinates, RadiometersTakeTargetsInMapCoordinates) {
     text.erase(text.find("LightSource \"point\""),
                text.find("Material \"diffusetr") - text.find("LightSource \"point\""));
     folder_.write("s.pbrt", text);
-    std::vector<std::string> words{
-        command, folder_.name_of("s.pbrt"), "--wavelengths", "550", "--target", target, "--csv", "-", "-q"};
+    std::vector<std::string> words{command, path("s.pbrt"), "--wavelengths", "550", "--target", target, "--csv", "-",
+                                   "-q"};
     if (command == "flux") words.insert(words.end(), {"--paths", "2000"});
     if (command == "brf") words.insert(words.end(), {"--zenith", "0,40", "--paths", "2000"});
     const Outcome done = frond_command(words);
@@ -107,8 +103,7 @@ TEST_F(Coordinates, RadiometersTakeTargetsInMapCoordinates) {
     const std::string here = measured(command, leaves(0, 0, 0), "-0.5,0.5,-0.5,0.5,0.75");
     EXPECT_EQ(here, measured(command, leaves(500000, 5200000, 312), "499999.5,500000.5,5199999.5,5200000.5,312.75"))
         << command;
-    const Outcome beside =
-        frond_command({command, folder_.name_of("s.pbrt"), "--wavelengths", "550", "--target", "0,1,0,1,0"});
+    const Outcome beside = frond_command({command, path("s.pbrt"), "--wavelengths", "550", "--target", "0,1,0,1,0"});
     EXPECT_THAT(beside.err, HasSubstr("the scene, which reaches from (499998, 5199998) to (500002, 5200002)"));
   }
 }
@@ -116,11 +111,10 @@ TEST_F(Coordinates, RadiometersTakeTargetsInMapCoordinates) {
 TEST_F(Coordinates, InstanceTablesOfSurveyedPlants) {
   const auto table = [&](const std::string& csv) {
     folder_.write("leaves.csv", csv);
-    const Outcome done =
-        frond_command({"instances", folder_.name_of("leaves.csv"), "-o", folder_.name_of("leaves.npy")});
+    const Outcome done = frond_command({"instances", path("leaves.csv"), "-o", path("leaves.npy")});
     EXPECT_EQ(done.code, 0) << done.err;
     said_ = done.err;
-    std::ifstream stream(folder_.name_of("leaves.npy"), std::ios::binary);
+    std::ifstream stream(path("leaves.npy"), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
   EXPECT_THAT(table("x,y,z\n1,2,3\n"), HasSubstr("<f4"));

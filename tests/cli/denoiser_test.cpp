@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -15,7 +14,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 /// A coated plate that fills the view: its BSDF is a random walk, whose weights have much noise.
-class ForDenoiser : public ::testing::Test {
+class ForDenoiser : public CommandTest {
  protected:
   void SetUp() override {
     folder_.write("scene.pbrt", R"(
@@ -30,11 +29,8 @@ Material "coateddiffuse" "rgb reflectance" [ .5 .5 .5 ] "float roughness" 0.3
 Shape "disk" "float radius" 9
 )");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  ImageFile render(const std::string& output, std::vector<std::string> more) const {
-    std::vector<std::string> words{"render", path("scene.pbrt"), "--no-cache", "-q", "-o", path(output)};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome o = frond_command(words);
+  ImageFile render(const std::string& output, const Words& more) const {
+    const Outcome o = frond_command({"render", path("scene.pbrt"), "--no-cache", "-q", "-o", path(output)}, more);
     EXPECT_EQ(o.code, 0) << o.err;
     return read_image(path(output), {});
   }
@@ -57,8 +53,6 @@ Shape "disk" "float radius" 9
         sum += (double(file.image.at(x, y, g)) - mean) * (double(file.image.at(x - 1, y, g)) - mean);
     return sum / count / (deviation * deviation);
   }
-
-  TestFolder folder_{"denoiser"};
 };
 
 /// 552 pairs of neighbours: the correlation of independent pixels has a standard deviation of 0.043; five of them are
@@ -104,7 +98,7 @@ TEST_F(ForDenoiser, ContradictsSplatting) {
   EXPECT_THAT(o.err, HasSubstr("--for-denoiser means \"reconstruction=importance\""));
 }
 
-class WithoutColorSpace : public ::testing::Test {
+class WithoutColorSpace : public CommandTest {
  protected:
   /// Writes a grey image whose header has no colour space, as after a denoiser.
   void SetUp() override {
@@ -113,14 +107,10 @@ class WithoutColorSpace : public ::testing::Test {
     write_image(path("bare.exr"), image, {});
     write_image(path("stated.exr"), image, {"linear SMPTE-C", {}});
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  Outcome convert(const std::string& from, const std::string& to, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"convert", path(from), "-o", path(to)};
-    words.insert(words.end(), more.begin(), more.end());
-    return frond_command(words);
+  Outcome convert(const std::string& from, const std::string& to, const Words& more = {}) const {
+    return frond_command({"convert", path(from), "-o", path(to)}, more);
   }
   std::string space_of(const std::string& name) const { return read_image(path(name), {}).header.color_space; }
-  TestFolder folder_{"spaceless"};
 };
 
 TEST_F(WithoutColorSpace, AnImageIsTakenForSrgbWithAWarning) {

@@ -4,8 +4,7 @@
 #include <filesystem>
 
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 #include "tests/support/tev_listener.h"
 
 namespace frond {
@@ -20,7 +19,7 @@ using ::testing::StartsWith;
 using testing::TevListener;
 using Manner = TevListener::Manner;
 
-class LiveDisplay : public ::testing::Test {
+class LiveDisplay : public CommandTest {
  protected:
   void SetUp() override { write_scene("scene.pbrt", 50, 40); }
   void write_scene(const std::string& name, int width, int height) const {
@@ -37,13 +36,9 @@ Shape "sphere" "float radius" .5
 )",
                                     width, height, width, height));
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  Outcome render(const std::string& output, std::vector<std::string> more) const {
-    std::vector<std::string> words{"render", path("scene.pbrt"), "--no-cache", "-o", path(output)};
-    words.insert(words.end(), more.begin(), more.end());
-    return frond_command(words);
+  Outcome render(const std::string& output, const Words& more) const {
+    return frond_command({"render", path("scene.pbrt"), "--no-cache", "-o", path(output)}, more);
   }
-  TestFolder folder_{"display"};
 };
 
 TEST_F(LiveDisplay, ExposureIsForDisplaysAndInTheHeader) {
@@ -78,10 +73,8 @@ TEST_F(LiveDisplay, AnExposureIsSuggestedForABlackImageAndConvertHasIt) {
   EXPECT_EQ(dark.code, 0) << dark.err;  // black, not dark: no exposure helps
   EXPECT_THAT(dark.err, Not(HasSubstr("--exposure")));
   ASSERT_EQ(render("a.exr", {}).code, 0);
-  const auto converted = [this](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"convert", path("a.exr"), "-o", path("c.png")};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome o = frond_command(words);
+  const auto converted = [this](const Words& more) {
+    const Outcome o = frond_command({"convert", path("a.exr"), "-o", path("c.png")}, more);
     EXPECT_EQ(o.code, 0) << o.err;
     return o.err;
   };
@@ -128,16 +121,14 @@ TEST_F(LiveDisplay, WhiteBalanceMakesTheScenesLightWhite) {
 }
 
 TEST_F(LiveDisplay, ShowsWhatTheFileHoldsInTheEnd) {
-  for (const std::vector<std::string>& more : {std::vector<std::string>{},
-                                               {"--filter", "box"},
-                                               {"--wavelengths", "bands,wavelengths=430,500,560,610,680,780"},
-                                               {"--wavelengths", "bands,wavelengths=600,650"},
-                                               {"--max-rms", "0.05", "--spp", "64"},
-                                               {"--channels", "normal", "--checkpoint", "100"}}) {
+  for (const Words& more : {Words{},
+                            {"--filter", "box"},
+                            {"--wavelengths", "bands,wavelengths=430,500,560,610,680,780"},
+                            {"--wavelengths", "bands,wavelengths=600,650"},
+                            {"--max-rms", "0.05", "--spp", "64"},
+                            {"--channels", "normal", "--checkpoint", "100"}}) {
     TevListener listener;
-    std::vector<std::string> words{"--display-server", listener.address()};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome o = render("a.exr", words);
+    const Outcome o = render("a.exr", joined({"--display-server", listener.address()}, more));
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_THAT(o.err, Not(HasSubstr("display:")));
     listener.join();

@@ -3,9 +3,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "tests/cli/command.h"
 #include "tests/cli/table.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -14,20 +13,11 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class ExportCommand : public ::testing::Test {
+class ExportCommand : public CommandTest {
  protected:
-  static Outcome exported(std::vector<std::string> words) {
-    words.insert(words.begin(), "export");
-    words.push_back("--no-cache");
-    return frond_command(words);
-  }
-  static std::string refusal(const std::vector<std::string>& words) {
-    const Outcome o = exported(words);
-    EXPECT_EQ(o.code, 1) << ::testing::PrintToString(words);
-    EXPECT_THAT(o.out, IsEmpty());
-    return o.err;
-  }
-  /// Rows of a direction's matrix in the first block of the file.
+  static Outcome exported(const Words& words) { return frond_command(joined({"export"}, words), {"--no-cache"}); }
+  static std::string refusal(const Words& words) { return refusal_of(joined({"export"}, words), {"--no-cache"}); }
+  /// Rows of a matrix of the file: those of a direction, in its first block.
   static std::vector<std::vector<double>> matrix(const std::string& xml, const std::string& direction) {
     size_t at = xml.find("<WavelengthDataDirection>" + direction);
     at = xml.find("<ScatteringData>", at) + std::string("<ScatteringData>").size();
@@ -41,8 +31,6 @@ class ExportCommand : public ::testing::Test {
     }
     return rows;
   }
-
-  TestFolder folder_{"export"};
 };
 
 TEST_F(ExportCommand, RadianceHoldsADiffuseSheetExactly) {
@@ -145,15 +133,15 @@ TEST_F(ExportCommand, TheSameBytesOnAnyNumberOfThreads) {
     if (std::string(format) == "osl") words.insert(words.end(), {"--rays", "1e3"});
     for (const char* threads : {"1", "2"}) {
       auto all = words;
-      all.insert(all.end(), {"--threads", threads, "-o", folder_.name_of(threads)});
+      all.insert(all.end(), {"--threads", threads, "-o", path(threads)});
       ASSERT_EQ(exported(all).code, 0) << format;
     }
-    EXPECT_EQ(bytes_of(folder_.name_of("1")), bytes_of(folder_.name_of("2"))) << format;
+    EXPECT_EQ(bytes_of(path("1")), bytes_of(path("2"))) << format;
   }
 }
 
 TEST_F(ExportCommand, RefusesTheImpossible) {
-  const std::string out = folder_.name_of("a");
+  const std::string out = path("a");
   EXPECT_THAT(refusal({"abm", "--format", "radiance", "-o", out}), HasSubstr("abm: its f is a random estimate"));
   EXPECT_THAT(refusal({"conductor", "--format", "csv", "--wavelengths", "551", "-o", out}), HasSubstr("delta lobe"));
   EXPECT_THAT(refusal({"dielectric,roughness=0.3", "--format", "radiance", "-o", out}), HasSubstr("refracts"));

@@ -6,9 +6,8 @@
 #include <sstream>
 
 #include "jobs/record/job.h"
-#include "tests/cli/command.h"
 #include "tests/cli/table.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -22,15 +21,13 @@ constexpr const char* kSpectrum =
     "720,0.25,0.28\n800,0.44,0.45\n1200,0.41,0.44\n1450,0.12,0.15\n1650,0.29,0.33\n"
     "1940,0.04,0.03\n2200,0.12,0.16\n";
 
-class Fitting : public ::testing::Test {
+class Fitting : public CommandTest {
  protected:
-  TestFolder folder_{"fit"};
   std::string spectrum_ = folder_.write("leaf.csv", kSpectrum).string();
-  std::string name_of(const char* name) const { return folder_.name_of(name); }
 };
 
 TEST_F(Fitting, WritesALeafThatAScenesReaderTakes) {
-  const std::string leaf = name_of("leaf.pbrt"), json = name_of("leaf.json"), csv = name_of("fitted.csv");
+  const std::string leaf = path("leaf.pbrt"), json = path("leaf.json"), csv = path("fitted.csv");
   const auto done = frond_command(
       {"fit", spectrum_, "-o", leaf, "--json", json, "--csv", csv, "--structure", "bifacial", "--sieve", "off"});
   ASSERT_EQ(done.code, 0) << done.err;
@@ -56,7 +53,7 @@ TEST_F(Fitting, NamesWhatItDerivesAndWhatItDoesNotUse) {
   for (const auto& row : parse_csv(kSpectrum).rows)
     with_a += fmt::format("{},{},{},x\n", row[0], row[1], 1 - std::stod(row[1]) - std::stod(row[2]));
   const auto fitted = [this](const std::string& csv) {
-    const std::string json = name_of("fit.json");
+    const std::string json = path("fit.json");
     const auto done = frond_command({"fit", csv, "--json", json, "--structure", "bifacial", "--sieve", "off"});
     EXPECT_EQ(done.code, 0) << done.err;
     return std::pair(done.out + done.err, nlohmann::json::parse(bytes_of(json)));
@@ -75,7 +72,7 @@ TEST_F(Fitting, NamesWhatItDerivesAndWhatItDoesNotUse) {
 
 // The fitted leaf is the measured one, so that the differences by direction are small.
 TEST_F(Fitting, ComparesByDirection) {
-  const std::string table = name_of("directions.csv"), spectra = name_of("spectra.csv"), json = name_of("fit.json");
+  const std::string table = path("directions.csv"), spectra = path("spectra.csv"), json = path("fit.json");
   const std::string nm = "450,500,550,600,650,680,720,760,800,900,1000,1200,1450,1650";
   ASSERT_EQ(frond_command({"goniophotometer", "leaf_solved,specimen=soybean-lopex", "--angles", "20", "--wavelengths",
                            nm, "--integrate", "--csv", table})
@@ -100,10 +97,8 @@ TEST_F(Fitting, ComparesByDirection) {
 }
 
 TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
-  const auto error = [this](std::vector<std::string> more) {
-    std::vector<std::string> words{"fit", spectrum_};
-    words.insert(words.end(), more.begin(), more.end());
-    const auto done = frond_command(words);
+  const auto error = [this](const Words& more) {
+    const auto done = frond_command({"fit", spectrum_}, more);
     EXPECT_NE(done.code, 0);
     return done.err;
   };
@@ -126,7 +121,7 @@ TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
 }
 
 TEST_F(Fitting, TakesAndReportsContentsPerLeafArea) {
-  const std::string json = name_of("leaf.json");
+  const std::string json = path("leaf.json");
   const auto done =
       frond_command({"fit", spectrum_, "--json", json, "--structure", "bifacial", "--sieve", "on", "--fix",
                      "chlorophyll=40ug/cm2", "--fix", "water=8mg/cm2", "--fix", "drymatter=0.004g/cm2"});
@@ -141,11 +136,9 @@ TEST_F(Fitting, TakesAndReportsContentsPerLeafArea) {
 }
 
 TEST_F(Fitting, AbsorbsAsTheSpecimenThatItIsLike) {
-  const auto absorption = [this](std::vector<std::string> more) {
-    const std::string json = name_of("leaf.json");
-    std::vector<std::string> words{"fit", spectrum_, "--json", json, "--sieve", "on"};
-    words.insert(words.end(), more.begin(), more.end());
-    EXPECT_EQ(frond_command(words).code, 0);
+  const auto absorption = [this](const Words& more) {
+    const std::string json = path("leaf.json");
+    EXPECT_EQ(frond_command({"fit", spectrum_, "--json", json, "--sieve", "on"}, more).code, 0);
     return nlohmann::json::parse(bytes_of(json))["absorption"].get<std::string>();
   };
   EXPECT_EQ(absorption({"--structure", "bifacial"}), "prospect");
@@ -159,7 +152,7 @@ TEST_F(Fitting, NamesTheBandsThatItMisses) {
   std::string dark = "nm,R,T\n";
   for (int nm = 400; nm <= 1000; nm += 20)
     dark += fmt::format("{},{},{}\n", nm, nm < 700 ? 0.001 : 0.44, nm < 700 ? 0.001 : 0.45);
-  const std::string json = name_of("leaf.json"), chart = name_of("leaf.svg");
+  const std::string json = path("leaf.json"), chart = path("leaf.svg");
   const auto done = frond_command({"fit", folder_.write("dark.csv", dark).string(), "--json", json, "--plot", chart});
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.out, AllOf(HasSubstr("off by more than 0.01"), HasSubstr("lowest R")));
@@ -199,11 +192,9 @@ class FittingMany : public Fitting {
     return text;
   }
   /// Runs frond fit with --structure and --sieve, which save time, and returns the table.
-  CsvTable fitted(std::vector<std::string> words) {
-    const std::string csv = name_of("fits.csv");
-    words.insert(words.begin(), "fit");
-    words.insert(words.end(), {"--structure", "bifacial", "--sieve", "on", "--csv", csv});
-    done_ = frond_command(words);
+  CsvTable fitted(const Words& words) {
+    const std::string csv = path("fits.csv");
+    done_ = frond_command(joined({"fit"}, words), {"--structure", "bifacial", "--sieve", "on", "--csv", csv});
     EXPECT_EQ(done_.code, 0) << done_.err;
     return parse_csv(bytes_of(csv));
   }
@@ -220,7 +211,7 @@ TEST_F(FittingMany, ABadLeafLosesNoOther) {
                                .write("many.csv", "leaf,nm,R,T\n" + rows("good", 1) + "bad,450,.1,.1\nbad,550,x,.1\n" +
                                                       rows("dim", .9) + "few,450,.1,.1\nabove,450,.9,.9\n")
                                .string();
-  const CsvTable table = fitted({file, "--all-leaves", "-o", name_of("leaves.pbrt")});
+  const CsvTable table = fitted({file, "--all-leaves", "-o", path("leaves.pbrt")});
   ASSERT_EQ(table.rows.size(), 5u);
   const auto column = [&](const char* name) { return words_of(table, name); };
   EXPECT_THAT(column("leaf"), ::testing::ElementsAre("good", "bad", "dim", "few", "above"));
@@ -233,7 +224,7 @@ TEST_F(FittingMany, ABadLeafLosesNoOther) {
   EXPECT_THAT(done_.out, AllOf(HasSubstr("5 leaves: 2 fitted, 3 failed"), HasSubstr("bad: ")));
   EXPECT_EQ(column("rmse")[1], "");
   EXPECT_GT(std::stod(column("chlorophylla_se")[0]), 0);
-  const std::string scene = bytes_of(name_of("leaves.pbrt"));
+  const std::string scene = bytes_of(path("leaves.pbrt"));
   EXPECT_THAT(scene, AllOf(HasSubstr("MakeNamedMaterial \"good\" \"string type\" \"leaf\""), HasSubstr("\"dim\"")));
   EXPECT_THAT(scene, ::testing::Not(HasSubstr("\"bad\"")));
 }
@@ -243,10 +234,10 @@ TEST_F(FittingMany, IsTheFitOfEachLeafAlone) {
   const std::string file =
       folder_.write("two.csv", "leaf,nm,R,T\n" + rows("a", 1) + rows("b", 0.8) + rows("c", 0.9)).string();
   const CsvTable one = fitted({file, "--all-leaves", "--threads", "1"});
-  const std::string csv = bytes_of(name_of("fits.csv"));
+  const std::string csv = bytes_of(path("fits.csv"));
   fitted({file, "--all-leaves", "--threads", "3"});
-  EXPECT_EQ(csv, bytes_of(name_of("fits.csv")));
-  const std::string json = name_of("b.json");
+  EXPECT_EQ(csv, bytes_of(path("fits.csv")));
+  const std::string json = path("b.json");
   ASSERT_EQ(
       frond_command({"fit", file, "--leaf", "b", "--structure", "bifacial", "--sieve", "on", "--json", json}).code, 0);
   const auto j = nlohmann::json::parse(bytes_of(json));
@@ -259,13 +250,13 @@ TEST_F(FittingMany, IsTheFitOfEachLeafAlone) {
 TEST_F(FittingMany, FilesCanShareNamesOfLeaves) {
   const std::string a = folder_.write("a.csv", "leaf,nm,R,T\n" + rows("oak", 1)).string(),
                     b = folder_.write("b.csv", "leaf,nm,R,T\n" + rows("oak", .9)).string();
-  const CsvTable table = fitted({a, b, spectrum_, name_of("missing.csv"), "-o", name_of("leaves.pbrt")});
+  const CsvTable table = fitted({a, b, spectrum_, path("missing.csv"), "-o", path("leaves.pbrt")});
   EXPECT_THAT(words_of(table, "file"), ::testing::ElementsAre("a.csv", "b.csv", "leaf.csv", "missing.csv"));
   EXPECT_THAT(words_of(table, "leaf"), ::testing::ElementsAre("oak", "oak", "leaf", "missing"));
   EXPECT_EQ(words_of(table, "status")[1], "fitted");
   EXPECT_NE(words_of(table, "thickness")[0], words_of(table, "thickness")[1]);
   EXPECT_THAT(words_of(table, "status")[3], HasSubstr("missing.csv"));
-  EXPECT_THAT(bytes_of(name_of("leaves.pbrt")), AllOf(HasSubstr("\"a.csv/oak\""), HasSubstr("\"b.csv/oak\"")));
+  EXPECT_THAT(bytes_of(path("leaves.pbrt")), AllOf(HasSubstr("\"a.csv/oak\""), HasSubstr("\"b.csv/oak\"")));
 }
 
 /// A stop as by Ctrl-C.
@@ -274,14 +265,14 @@ TEST_F(FittingMany, WritesNothingIfItIsStopped) {
   Arguments args(params_of(job), command_spelling);
   args.set("file", folder_.write("two.csv", "leaf,nm,R,T\n" + rows("a", 1) + rows("b", 0.8)).string());
   args.set("all-leaves", "true");
-  args.set("csv", name_of("fits.csv"));
-  args.set("output", name_of("leaves.pbrt"));
+  args.set("csv", path("fits.csv"));
+  args.set("output", path("leaves.pbrt"));
   JobContext context(silent_log(), session_options(args));
   std::stop_source source;
   source.request_stop();
   EXPECT_THROW(run_job(job, {context, args, {.stop = source.get_token()}}), Stopped);
-  EXPECT_FALSE(std::filesystem::exists(name_of("fits.csv")));
-  EXPECT_FALSE(std::filesystem::exists(name_of("leaves.pbrt")));
+  EXPECT_FALSE(std::filesystem::exists(path("fits.csv")));
+  EXPECT_FALSE(std::filesystem::exists(path("leaves.pbrt")));
 }
 
 TEST_F(FittingMany, OfOneLeafIsATableToo) { EXPECT_EQ(fitted({spectrum_, "--all-leaves"}).rows.size(), 1u); }
@@ -289,9 +280,9 @@ TEST_F(FittingMany, OfOneLeafIsATableToo) { EXPECT_EQ(fitted({spectrum_, "--all-
 /// The table states every number of a leaf that its scene file has: lignin, which follows cellulose, was missing.
 TEST_F(FittingMany, TheTableHasWhatTheSceneFileHas) {
   for (const char* tables : {"prospect", "baranoski"}) {
-    const CsvTable table = fitted(
-        {spectrum_, "--all-leaves", "--absorption", tables, "--fix", "water=0.008g/cm2", "-o", name_of("a.pbrt")});
-    std::istringstream in(bytes_of(name_of("a.pbrt")));
+    const CsvTable table =
+        fitted({spectrum_, "--all-leaves", "--absorption", tables, "--fix", "water=0.008g/cm2", "-o", path("a.pbrt")});
+    std::istringstream in(bytes_of(path("a.pbrt")));
     int numbers = 0;
     for (std::string line; std::getline(in, line);) {
       const std::string name = "    \"float ";
@@ -309,9 +300,8 @@ TEST_F(FittingMany, TheTableHasWhatTheSceneFileHas) {
 }
 
 TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {
-  const auto error = [](std::vector<std::string> words) {
-    words.insert(words.begin(), "fit");
-    const auto done = frond_command(words);
+  const auto error = [](const Words& words) {
+    const auto done = frond_command({"fit"}, words);
     EXPECT_NE(done.code, 0);
     return done.err;
   };
@@ -321,7 +311,7 @@ TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(error({spectrum_, "--all-leaves", "--fix", "clorophylla=1"}), HasSubstr("did you mean"));
   EXPECT_THAT(error({spectrum_, "--fix", "Cab=40"}),
               HasSubstr("PROSPECT's Cab is chlorophyll, as chlorophyll=40ug/cm2"));
-  EXPECT_THAT(error({name_of("none.csv"), "--all-leaves"}), HasSubstr("none.csv"));
+  EXPECT_THAT(error({path("none.csv"), "--all-leaves"}), HasSubstr("none.csv"));
   const std::string two = folder_.write("two.csv", "leaf,nm,R\na,550,.1\nb,550,.1\n").string();
   EXPECT_THAT(error({two}), AllOf(HasSubstr("--leaf selects one of a, b"), HasSubstr("--all-leaves takes all")));
   EXPECT_THAT(error({two, "--all-leaves"}), AllOf(HasSubstr("no leaf could be fitted"), HasSubstr("fewer")));

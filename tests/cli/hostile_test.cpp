@@ -3,8 +3,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// Arguments and files that a command once accepted, although its output could not be read or content was omitted
 /// without a message.
@@ -15,11 +14,10 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class Hostile : public ::testing::Test {
+class Hostile : public CommandTest {
  protected:
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
   /// Returns the message of a command that has to fail, and to write no file.
-  std::string refusal(const std::vector<std::string>& words, const std::string& output = "") const {
+  std::string refusal(const Words& words, const std::string& output = "") const {
     const Outcome o = frond_command(words);
     EXPECT_EQ(o.code, 1) << o.err;
     EXPECT_FALSE(!output.empty() && std::filesystem::exists(path(output))) << output;
@@ -33,14 +31,11 @@ class Hostile : public ::testing::Test {
                    material + "\nShape \"disk\"\n")
         .string();
   }
-
-  TestFolder folder_{"hostile"};
 };
 
 TEST_F(Hostile, CanopiesThatNoTableHoldsAreRefused) {
-  const auto canopy = [this](std::vector<std::string> words) {
-    words.insert(words.begin(), {"canopy", "-o", path("c.npy"), "--count", "10"});
-    return refusal(words, "c.npy");
+  const auto canopy = [this](const Words& words) {
+    return refusal(joined({"canopy", "-o", path("c.npy"), "--count", "10"}, words), "c.npy");
   };
   for (const std::string option : {"--size=1e300,1e300", "--heights=-1e300,1e300", "--ball=1e300", "--scale=1e300",
                                    "--scale=1e-300", "--apart=1e-300"})

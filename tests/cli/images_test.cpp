@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// Messages about images with unused content or values that are not finite.
 namespace frond {
@@ -16,9 +15,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class Images : public testing::Test {
+class Images : public CommandTest {
  protected:
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
   /// Writes a linear image of 4 x 4 pixels of 0.25, with values set from the first on.
   std::string image(const std::string& name, std::initializer_list<float> values = {}, const std::string& seed = "1") {
     Image pixels(4, 4, {"R", "G", "B"});
@@ -28,9 +26,7 @@ class Images : public testing::Test {
     return path(name);
   }
   nlohmann::json difference(const std::vector<std::string>& halves, std::string& messages) {
-    std::vector<std::string> words{"difference", "--json", path("d.json"), "-o", path("d.png")};
-    words.insert(words.end(), halves.begin(), halves.end());
-    const Outcome o = frond_command(words);
+    const Outcome o = frond_command({"difference", "--json", path("d.json"), "-o", path("d.png")}, halves);
     EXPECT_EQ(o.code, 0) << o.err;
     messages = o.out + o.err;
     return nlohmann::json::parse(testing_file("d.json"));  // throws for NaN, which is no JSON
@@ -39,8 +35,6 @@ class Images : public testing::Test {
     std::ifstream in(path(name));
     return {std::istreambuf_iterator<char>(in), {}};
   }
-
-  TestFolder folder_{"images"};
 };
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();

@@ -8,8 +8,7 @@
 
 #include "image/image_codec.h"
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 #ifdef FROND_HAS_ASSIMP
 
@@ -85,13 +84,11 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-class ImportCommand : public ::testing::Test {
+class ImportCommand : public CommandTest {
  protected:
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
   /// Imports to scene.pbrt; the result passes the check, and its image has a value that is not the sky's.
-  Outcome imported(const std::string& model, std::vector<std::string> options = {}) {
-    options.insert(options.begin(), {"import", path(model), "-o", path("scene.pbrt")});
-    const Outcome o = frond_command(options);
+  Outcome imported(const std::string& model, const Words& options = {}) {
+    const Outcome o = frond_command({"import", path(model), "-o", path("scene.pbrt")}, options);
     EXPECT_EQ(o.code, 0) << o.err;
     if (o.code != 0) return o;
     const Outcome checked = frond_command({"check", path("scene.pbrt"), "--strict"});
@@ -110,22 +107,19 @@ class ImportCommand : public ::testing::Test {
     return o;
   }
   /// Returns the message of an import that has to fail, and to write nothing.
-  std::string refusal(const std::string& model, std::vector<std::string> options = {}) {
+  std::string refusal(const std::string& model, const Words& options = {}) {
     const auto files = [this] {
       std::set<fs::path> all;
       for (const auto& entry : fs::recursive_directory_iterator(path(""))) all.insert(entry.path());
       return all;
     };
     const auto before = files();
-    options.insert(options.begin(), {"import", path(model), "-o", path("refused.pbrt")});
-    const Outcome o = frond_command(options);
+    const Outcome o = frond_command({"import", path(model), "-o", path("refused.pbrt")}, options);
     EXPECT_EQ(o.code, 1) << o.err << o.out;
     EXPECT_EQ(files(), before);
     return o.err;
   }
   std::string plant() const { return text_of(path("scene-plant.pbrt")); }
-
-  TestFolder folder_{"import"};
 };
 
 constexpr const char* kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";

@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/cli/command.h"
 #include "tests/cli/table.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -12,11 +11,11 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class InstancesCommand : public ::testing::Test {
+class InstancesCommand : public CommandTest {
  protected:
   /// The table that the command writes.
   std::string table_of(const std::string& text, const std::string& messages = "") {
-    const std::string csv = folder_.write("rows.csv", text).string(), npy = folder_.name_of("rows.npy");
+    const std::string csv = folder_.write("rows.csv", text).string(), npy = path("rows.npy");
     const Outcome done = frond_command({"instances", csv, "-o", npy});
     EXPECT_EQ(done.code, 0) << done.err << text;
     EXPECT_THAT(done.err + done.out, HasSubstr(messages)) << text;
@@ -24,14 +23,13 @@ class InstancesCommand : public ::testing::Test {
     return bytes_of(npy);
   }
   std::string refusal(const std::string& text) {
-    const std::string csv = folder_.write("bad.csv", text).string(), npy = folder_.name_of("bad.npy");
+    const std::string csv = folder_.write("bad.csv", text).string(), npy = path("bad.npy");
     const Outcome done = frond_command({"instances", csv, "-o", npy});
     EXPECT_EQ(done.code, 1) << text;
     EXPECT_FALSE(std::filesystem::exists(npy));
     return done.err;
   }
 
-  TestFolder folder_{"instances"};
   std::string messages_;
 };
 

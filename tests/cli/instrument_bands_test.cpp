@@ -2,8 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// Bands with responses under an instrument, whose light is an illuminant.
 namespace frond {
@@ -14,7 +13,7 @@ using ::testing::HasSubstr;
 constexpr double kZ = 5;  // one false alarm in 1.7 million
 
 /// A plate whose reflectance rises from 0.1 at 500 nm to 0.5 at 700 nm, under a light that rises from 1 to 3.
-class InstrumentBands : public ::testing::Test {
+class InstrumentBands : public CommandTest {
  protected:
   InstrumentBands() {
     folder_.write("wide.spd", "500 1 700 1");
@@ -22,15 +21,11 @@ class InstrumentBands : public ::testing::Test {
     folder_.write("rising.spd", "400 0 500 1 700 3 800 3");
     folder_.write("plate.spd", "400 0.1 500 0.1 700 0.5 800 0.5");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  Outcome measured(const std::string& instrument, std::vector<std::string> more) const {
-    std::vector<std::string> words{instrument, "diffuse,reflectance=" + path("plate.spd"), "--rays", "1e6",
-                                   "--no-cache"};
-    words.insert(words.end(), {"--wavelengths", "bands,responses=" + path("wide.spd") + "," + path("narrow.spd")});
-    words.insert(words.end(), more.begin(), more.end());
-    return frond_command(words);
+  Outcome measured(const std::string& instrument, const Words& more) const {
+    return frond_command({instrument, "diffuse,reflectance=" + path("plate.spd"), "--rays", "1e6", "--no-cache",
+                          "--wavelengths", "bands,responses=" + path("wide.spd") + "," + path("narrow.spd")},
+                         more);
   }
-  TestFolder folder_{"instrument_bands"};
 };
 
 TEST_F(InstrumentBands, AreWeightedByTheIlluminant) {

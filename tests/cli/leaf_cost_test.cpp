@@ -6,8 +6,7 @@
 
 #include "render/plugins.h"
 #include "scene/leaf_models.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {

@@ -2,9 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command.h"
 #include "tests/study/choose_scene.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// A leaf model of a shared object (examples/plugins/leaf_angular.cpp) is supported wherever built-in models are.
 namespace frond {
@@ -14,19 +13,16 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class LeafPlugin : public ::testing::Test {
+class LeafPlugin : public CommandTest {
  protected:
   static Outcome with_plugin(std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--plugin", FROND_TEST_PLUGINS "/leaf_angular.so"});
-    return frond_command(std::move(arguments));
+    return frond_command(arguments, {"--plugin", FROND_TEST_PLUGINS "/leaf_angular.so"});
   }
   static nlohmann::json json_of(const Outcome& o) {
     EXPECT_EQ(o.code, 0) << o.err;
     return nlohmann::json::parse(o.out);
   }
   std::string scene() const { return folder_.write("scene.pbrt", two_leaves("", "", 32)).string(); }
-
-  TestFolder folder_{"leaf_plugin"};
 };
 
 TEST_F(LeafPlugin, IsAChoiceOfTheOpenLeaf) {
@@ -41,7 +37,7 @@ TEST_F(LeafPlugin, IsAChoiceOfTheOpenLeaf) {
 }
 
 TEST_F(LeafPlugin, ReplacesAllLeavesAndIsReplaced) {
-  const std::string image = folder_.name_of("a.exr");
+  const std::string image = path("a.exr");
   EXPECT_EQ(with_plugin({"render", scene(), "--swap", "*=leaf_angular", "--spp", "1", "-o", image}).code, 0);
   const std::string own =
       folder_.write("own.pbrt", "WorldBegin\nMaterial \"leaf_angular\"\nShape \"sphere\"\n").string();
@@ -95,7 +91,7 @@ TEST_F(LeafPlugin, IsWrittenByFit) {
 2200,0.19,0.2
 )")
                                   .string();
-  const std::string out = folder_.name_of("leaf.pbrt");
+  const std::string out = path("leaf.pbrt");
   const Outcome o = with_plugin({"fit", spectra, "--material", "leaf_angular", "-o", out});
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(frond_command({"fit", spectra, "--material", "diffuse"}).err,

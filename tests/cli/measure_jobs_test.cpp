@@ -2,9 +2,8 @@
 
 #include "jobs/record/job.h"
 #include "render/material_words.h"
-#include "tests/cli/command.h"
 #include "tests/cli/table.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// A material in text, and the random numbers that follow from it.
 namespace frond {

@@ -5,8 +5,7 @@
 #include <iterator>
 
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -21,7 +20,7 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-class Merge : public ::testing::Test {
+class Merge : public CommandTest {
  protected:
   void SetUp() override {
     setenv("SOURCE_DATE_EPOCH", "0", 1);
@@ -37,27 +36,18 @@ NamedMaterial "thing"
 Shape "sphere" "float radius" .5
 )");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  void render(std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"render", path("scene.pbrt"), "--no-cache", "-q"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome o = frond_command(arguments);
+  void render(const Words& more) const {
+    const Outcome o = frond_command({"render", path("scene.pbrt"), "--no-cache", "-q"}, more);
     ASSERT_EQ(o.code, 0) << o.err;
   }
-  /// Renders a part of some samples, with further arguments `more`.
-  std::string part(const std::string& samples, std::vector<std::string> more = {}) const {
+  /// A part of some samples, and what else there is to say.
+  std::string part(const std::string& samples, const Words& more = {}) const {
     const std::string file = path(fmt::format("{}.part", count_++));
-    more.insert(more.end(), {"--part", file, "--samples", samples});
-    render(more);
+    render(joined(more, {"--part", file, "--samples", samples}));
     return file;
   }
-  Outcome merge(std::vector<std::string> files, const std::vector<std::string>& more) const {
-    files.insert(files.begin(), "merge");
-    files.insert(files.end(), more.begin(), more.end());
-    return frond_command(files);
-  }
+  static Outcome merge(const Words& files, const Words& more) { return frond_command(joined({"merge"}, files), more); }
 
-  TestFolder folder_{"merge"};
   mutable int count_ = 0;
 };
 

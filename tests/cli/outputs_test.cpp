@@ -4,8 +4,7 @@
 #include <map>
 
 #include "system/file_bytes.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// Outputs of commands: no output replaces an input or another output, whatever its name, and a command that fails
 /// leaves its folder as it was.
@@ -16,14 +15,12 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-using Words = std::vector<std::string>;
-
 constexpr const char* kCsv = "wavelength,R,T\n500,0.1,0.1\n550,0.2,0.2\n600,0.1,0.1\n";
 
-/// Changes to a temporary folder, so that names of files can be relative.
-class Outputs : public ::testing::Test {
+/// Works in a folder of its own, so that names of files can be relative.
+class Outputs : public CommandTest {
  protected:
-  Outputs() { fs::current_path(folder_.name_of("")); }
+  Outputs() { fs::current_path(path("")); }
   ~Outputs() override { fs::current_path(before_); }
 
   std::string scene(const std::string& name, const std::string& world, const std::string& film = "") const {
@@ -54,12 +51,9 @@ class Outputs : public ::testing::Test {
     return o.err;
   }
   static Words render(const Words& more) {
-    Words words{"render", "scene.pbrt", "--no-cache", "-q", "--spp", "1"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return joined({"render", "scene.pbrt", "--no-cache", "-q", "--spp", "1"}, more);
   }
 
-  TestFolder folder_{"outputs"};
   fs::path before_ = fs::current_path();
 };
 
@@ -72,9 +66,8 @@ TEST_F(Outputs, TwoThatAreOneFileAreRefusedByWhateverNames) {
   fs::create_directory("report");
   fs::create_directory_symlink("sub", "link");
   const std::string same = "write to the same file";
-  for (const Words& names :
-       {Words{"./o.exr", "o.exr"}, Words{"o.exr", folder_.name_of("o.exr")}, Words{"sub/../o.exr", "o.exr"},
-        Words{"sub/o.exr", "link/o.exr"}, Words{"hard.exr", "old.json"}})
+  for (const Words& names : {Words{"./o.exr", "o.exr"}, Words{"o.exr", path("o.exr")}, Words{"sub/../o.exr", "o.exr"},
+                             Words{"sub/o.exr", "link/o.exr"}, Words{"hard.exr", "old.json"}})
     EXPECT_THAT(refusal(render({"-o", names[0], "--json", names[1]})), HasSubstr(same)) << names[0];
   EXPECT_THAT(refusal({"brf", "scene.pbrt", "--csv", "x", "--json", "./x"}), HasSubstr(same));
   EXPECT_THAT(refusal({"flux", "scene.pbrt", "--csv", "x", "--json", "./x"}), HasSubstr(same));

@@ -5,8 +5,7 @@
 #include <filesystem>
 
 #include "image/image_file.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -21,7 +20,7 @@ constexpr std::string_view kOptions =
     "6\n";
 constexpr std::string_view kWorld = "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n";
 
-class PbrtOptions : public ::testing::Test {
+class PbrtOptions : public CommandTest {
  protected:
   void SetUp() override {
     folder_.write("scene.pbrt", std::string(kOptions) + std::string(kWorld));
@@ -31,8 +30,6 @@ class PbrtOptions : public ::testing::Test {
     folder_.write("other.pbrt", std::string(kOptions) + std::string(kWorld) +
                                     "Material \"hair\" Shape \"sphere\"\nTexture \"t\" \"float\" \"ptex\"\n");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  TestFolder folder_{"pbrt_options"};
 };
 
 TEST_F(PbrtOptions, ASceneAloneIsRendered) {
@@ -195,9 +192,7 @@ TEST_F(PbrtOptions, WhatIsUnsupportedCanBeLetPass) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{"--ignore-unsupported", path("other.pbrt")},
                                                 {"--ignore-unsupported", "materials,textures", path("other.pbrt")},
                                                 {"--ignore-unsupported=all", path("other.pbrt")}}) {
-    std::vector<std::string> command{"render", "-o", path("a.exr"), "--spp", "1"};
-    command.insert(command.end(), words.begin(), words.end());
-    const Outcome passed = frond_command(command);
+    const Outcome passed = frond_command({"render", "-o", path("a.exr"), "--spp", "1"}, words);
     EXPECT_EQ(passed.code, 0) << passed.err;
     EXPECT_THAT(passed.err, HasSubstr("warning: Material \"hair\" of pbrt-v4 is not supported"));
   }
@@ -215,11 +210,9 @@ TEST_F(PbrtOptions, StrictMakesErrorsOfWarnings) {
 }
 
 TEST_F(PbrtOptions, WithoutJitterAllSamplesAreThoseOfThePixelsCentres) {
-  const auto variance = [&](std::vector<std::string> more) {
-    std::vector<std::string> words{path("scene.pbrt"), "-o", path("a.exr"), "--spp", "16", "-q", "--integrator",
-                                   "path,maxdepth=0"};
-    words.insert(words.end(), more.begin(), more.end());
-    EXPECT_EQ(frond_command(words).code, 0);
+  const auto variance = [&](const Words& more) {
+    const Words words{path("scene.pbrt"), "-o", path("a.exr"), "--spp", "16", "-q", "--integrator", "path,maxdepth=0"};
+    EXPECT_EQ(frond_command(words, more).code, 0);
     const Image image = read_image(path("a.exr"), {}).image;
     const size_t green = image.channel("variance.G").value();
     float most = 0;

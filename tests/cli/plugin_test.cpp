@@ -8,8 +8,7 @@
 #include "image/image_file.h"
 #include "render/plugins.h"
 #include "scene/plugin_library.h"
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// Shared objects made by tests/CMakeLists.txt from tests/plugins.
 namespace frond {
@@ -84,7 +83,7 @@ TEST(Plugin, FoldersAreSearchedInOrder) {
   EXPECT_THAT(error_of([&] { plugins_in(a + ":/no/such/folder"); }), HasSubstr("no folder \"/no/such/folder\""));
 }
 
-class PluginCommands : public ::testing::Test {
+class PluginCommands : public CommandTest {
  protected:
   void SetUp() override {
     folder_.write("scene.pbrt", R"(
@@ -96,8 +95,7 @@ Material "picky"
 Shape "sphere"
 )");
   }
-  TestFolder folder_{"plugins"};
-  std::string scene_ = folder_.name_of("scene.pbrt"), image_ = folder_.name_of("a.exr");
+  std::string scene_ = path("scene.pbrt"), image_ = path("a.exr");
 };
 
 TEST_F(PluginCommands, ListAndDescribeKnowThem) {
@@ -124,7 +122,7 @@ TEST_F(PluginCommands, RenderUsesTheirMaterials) {
 
 /// By formulas: what a camera that looks down on a square sees of it, in 4096 samples. Where these are random the
 /// tolerance is six standard errors at least: a false alarm in 10^8.
-class PluginKinds : public ::testing::Test {
+class PluginKinds : public CommandTest {
  protected:
   /// The mean of green in the image of the scene, whose film is 8 x 8.
   double render(const std::string& world, const std::vector<std::string>& plugins) {
@@ -136,12 +134,12 @@ Sampler "independent" "integer pixelsamples" 64
 WorldBegin
 )" + world)
                                   .string();
-    std::vector<std::string> words{"render", scene, "-o", folder_.name_of("a.exr"), "-q"};
+    std::vector<std::string> words{"render", scene, "-o", path("a.exr"), "-q"};
     for (const std::string& name : plugins) words.insert(words.end(), {"--plugin", library(name)});
     const Outcome outcome = frond_command(words);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     if (outcome.code != 0) return 0;
-    const ImageFile file = read_image(folder_.name_of("a.exr"), {});
+    const ImageFile file = read_image(path("a.exr"), {});
     EXPECT_EQ(file.image.width, 8);
     EXPECT_EQ(file.image.height, 8);
     EXPECT_GT(file.image.channels.size(), 3u) << "depth";
@@ -152,10 +150,9 @@ WorldBegin
   }
   std::string refusal(const std::string& scene) {
     return frond_command({"render", folder_.write("refused.pbrt", scene).string(), "--plugin", library("kinds"), "-o",
-                          folder_.name_of("b.exr")})
+                          path("b.exr")})
         .err;
   }
-  TestFolder folder_{"kinds"};
 };
 
 TEST_F(PluginKinds, AFilmAShapeAndAnAreaLightRender) {
@@ -210,11 +207,10 @@ TEST_F(PluginKinds, WhatTheyMakeWrongIsRefusedAtItsPlace) {
 }
 
 TEST_F(PluginCommands, TheSearchPathIsLoadedByItself) {
-  fs::create_directory(folder_.name_of("path"));
-  fs::copy(library("planted"), folder_.name_of("path/planted.so"));
-  setenv("FROND_PLUGIN_PATH", folder_.name_of("path").c_str(), 1);
-  const Outcome list = frond_command({"list"}),
-                twice = frond_command({"list", "--plugin", folder_.name_of("path/planted.so")}),
+  fs::create_directory(path("path"));
+  fs::copy(library("planted"), path("path/planted.so"));
+  setenv("FROND_PLUGIN_PATH", path("path").c_str(), 1);
+  const Outcome list = frond_command({"list"}), twice = frond_command({"list", "--plugin", path("path/planted.so")}),
                 copied = frond_command({"list", "--plugin", library("planted")});
   unsetenv("FROND_PLUGIN_PATH");
   EXPECT_THAT(list.out, HasSubstr("picky"));

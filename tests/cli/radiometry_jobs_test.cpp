@@ -4,8 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// The jobs brf and flux as commands; tests/radiometry tests what they measure.
 namespace frond {
@@ -18,7 +17,7 @@ constexpr const char* kSun =
     "LightSource \"distant\" \"point3 from\" [-1 0 2] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-E\"\n";
 constexpr const char* kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-E\"\n";
 
-class RadiometryJobs : public ::testing::Test {
+class RadiometryJobs : public CommandTest {
  protected:
   Outcome measured(const std::string& lights, std::vector<std::string> words) {
     const auto scene =
@@ -32,7 +31,6 @@ class RadiometryJobs : public ::testing::Test {
     return frond_command(words);
   }
 
-  TestFolder folder_{"radiometry_jobs"};
   std::string options_ = "Option \"float period\" [1 1]";
   std::string more_;  ///< of the scene
 };
@@ -48,8 +46,8 @@ TEST_F(RadiometryJobs, TheFactorIsNamedByItsIllumination) {
     const auto json = nlohmann::json::parse(measured(lights, {"brf", "--zenith", "0", "--json", "-", "-q"}).out);
     EXPECT_EQ(json["quantity"], name);
     EXPECT_NEAR(json["brf"][0][column].get<double>(), 0.3, 2e-3);
-    EXPECT_EQ(measured(lights, {"brf", "--zenith", "0,30", "--plot", folder_.name_of("plot.svg")}).code, 0);
-    std::ifstream plot(folder_.name_of("plot.svg"));
+    EXPECT_EQ(measured(lights, {"brf", "--zenith", "0,30", "--plot", path("plot.svg")}).code, 0);
+    std::ifstream plot(path("plot.svg"));
     EXPECT_THAT(std::string(std::istreambuf_iterator<char>(plot), {}), HasSubstr(">" + name + "<"));
   };
   check(kSun, "BRF", "brf");
@@ -111,7 +109,7 @@ TEST_F(RadiometryJobs, PhotonsAreCountedInPhysicalUnitsAlone) {
 TEST_F(RadiometryJobs, BandsHaveNamesInAllOutputs) {
   folder_.write("par.spd", "400 1 700 1");
   folder_.write("green.spd", "540 1 560 1");
-  const std::string files = "bands,responses=" + folder_.name_of("par.spd") + "," + folder_.name_of("green.spd");
+  const std::string files = "bands,responses=" + path("par.spd") + "," + path("green.spd");
   const auto run = [&](std::vector<std::string> words, const std::string& names) {
     words.insert(words.end(), {"--wavelengths", files + names});
     return measured(kSun, words);
@@ -128,8 +126,8 @@ TEST_F(RadiometryJobs, BandsHaveNamesInAllOutputs) {
   EXPECT_EQ(json["flux"][1]["band"], "G");
   EXPECT_EQ(json["irradiance"], "scene");
   EXPECT_THAT(run({"flux"}, "").err, HasSubstr("bands are weighted by the irradiance scene\n"));
-  EXPECT_EQ(run({"brf", "--zenith", "0,30", "--plot", folder_.name_of("plot.svg")}, "").code, 0);
-  std::ifstream plot(folder_.name_of("plot.svg"));
+  EXPECT_EQ(run({"brf", "--zenith", "0,30", "--plot", path("plot.svg")}, "").code, 0);
+  std::ifstream plot(path("plot.svg"));
   EXPECT_THAT(std::string(std::istreambuf_iterator<char>(plot), {}), HasSubstr(">green<"));
   more_ =
       "ObjectBegin \"leaf\"\nShape \"disk\" \"float radius\" 0.3\nObjectEnd\nTranslate 0.5 0.5 1\n"
@@ -144,11 +142,10 @@ TEST_F(RadiometryJobs, TheChartShowsTheSunAndLinearAxes) {
       "Material \"diffuse\" \"spectrum reflectance\" [500 0.02 560 0.02 830 0.5 900 0.5]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [0 0 .1 1 0 .1 0 1 .1 1 1 .1]\n";
   const auto plot = [this](const std::string& wavelengths, const std::string& lights) {
-    EXPECT_EQ(measured(lights, {"brf", "--zenith=-60:60:30", "--wavelengths", wavelengths, "--plot",
-                                folder_.name_of("plot.svg")})
-                  .code,
-              0);
-    std::ifstream file(folder_.name_of("plot.svg"));
+    EXPECT_EQ(
+        measured(lights, {"brf", "--zenith=-60:60:30", "--wavelengths", wavelengths, "--plot", path("plot.svg")}).code,
+        0);
+    std::ifstream file(path("plot.svg"));
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
   const std::string two = plot("550,841.294", kSun);
@@ -176,7 +173,7 @@ TEST_F(RadiometryJobs, AResultThatIsNotKeptIsAWarning) {
     EXPECT_EQ(o.code, 0);
     EXPECT_EQ(o.out, "");
     EXPECT_THAT(o.err, HasSubstr(lost)) << command;
-    EXPECT_EQ(measured(kSun, {command, "-q", "--csv", folder_.name_of("a.csv")}).err, "");
+    EXPECT_EQ(measured(kSun, {command, "-q", "--csv", path("a.csv")}).err, "");
     EXPECT_EQ(measured(kSun, {command, "-q", "--json", "-"}).err, "");
   }
   for (const char* command : {"spectrophotometer", "goniophotometer"})
@@ -249,7 +246,7 @@ class RadiometryByInstance : public RadiometryJobs {
       more_ += fmt::format("{}ObjectInstance \"leaf\"\n", i ? "Translate .1 0 0\n" : "Translate 0 .5 1\n");
   }
   std::string content(const std::string& name) {
-    std::ifstream file(folder_.name_of(name));
+    std::ifstream file(path(name));
     return {std::istreambuf_iterator<char>(file), {}};
   }
 };
@@ -311,7 +308,7 @@ TEST_F(RadiometryByInstance, AnErrorThatCannotBeReachedEnds) {
 
 /// --csv writes both tables or none.
 TEST_F(RadiometryByInstance, BothTablesAreKept) {
-  const std::vector<std::string> command{"flux", "--by", "instance", "--csv", folder_.name_of("leaves.csv")};
+  const std::vector<std::string> command{"flux", "--by", "instance", "--csv", path("leaves.csv")};
   const Outcome o = measured(kSun, command);
   EXPECT_THAT(o.out, ::testing::MatchesRegex("        share +material +550 nm\n +reflected(.|\n)*"));
   EXPECT_THAT(o.out, Not(HasSubstr("instance")));  // is in the file
@@ -324,22 +321,21 @@ TEST_F(RadiometryByInstance, BothTablesAreKept) {
   EXPECT_THAT(printed.out,
               ::testing::ContainsRegex("uncollided +.*\n\n  instance +area +absorbed_550\n +1 +0.01 +0.0"));
 
-  std::filesystem::remove(folder_.name_of("leaves.csv"));
-  std::filesystem::remove(folder_.name_of("leaves-flux.csv"));
-  std::filesystem::create_directory(folder_.name_of("leaves-flux.csv"));
+  std::filesystem::remove(path("leaves.csv"));
+  std::filesystem::remove(path("leaves-flux.csv"));
+  std::filesystem::create_directory(path("leaves-flux.csv"));
   EXPECT_THAT(measured(kSun, command).err, HasSubstr("leaves-flux.csv\": it is a folder"));
-  EXPECT_FALSE(std::filesystem::exists(folder_.name_of("leaves.csv")));
+  EXPECT_FALSE(std::filesystem::exists(path("leaves.csv")));
 }
 
 TEST_F(RadiometryByInstance, TheFileBesideIsNoOtherFile) {
-  const auto csv = [&](const std::string& name, std::vector<std::string> more) {
-    more.insert(more.begin(), {"flux", "--by", "instance", "--csv", folder_.name_of(name)});
-    return measured(kSun, more).err;
+  const auto csv = [&](const std::string& name, const Words& more) {
+    return measured(kSun, joined({"flux", "--by", "instance", "--csv", path(name)}, more)).err;
   };
-  EXPECT_THAT(csv("leaves.csv", {"--json", folder_.name_of("leaves-flux.csv")}),
+  EXPECT_THAT(csv("leaves.csv", {"--json", path("leaves-flux.csv")}),
               HasSubstr("--json and the table of shares beside --csv write to the same file"));
   folder_.write("sun-flux.spd", "300 1\n2500 1\n");
-  EXPECT_THAT(csv("sun.spd", {"--irradiance", folder_.name_of("sun-flux.spd"), "--wavelengths", "400:700:50"}),
+  EXPECT_THAT(csv("sun.spd", {"--irradiance", path("sun-flux.spd"), "--wavelengths", "400:700:50"}),
               HasSubstr("the table of shares beside --csv would replace the input"));
   EXPECT_EQ(content("sun-flux.spd"), "300 1\n2500 1\n");
 }

@@ -73,12 +73,12 @@ TEST_F(Scripts, MeasurementsAreListedAndExplained) {
 TEST_F(Scripts, MeasurementsRefuseNamesAndOptionsThatTheyDoNotKnow) {
   for (const std::string name : {"adaptive", "many_machines", "stability"}) {
     const ChildResult r = run_script({"measurements/run", name, "--quik"});
-    EXPECT_EQ(r.status, 1) << name;
+    EXPECT_NE(r.status, 0) << name;
     EXPECT_EQ(r.err, "usage: measurements/run " + name + " --help\n");
   }
   for (const std::string name : {"stabilty", "shared", "__init__", "../scripts/demo", "bench/page"}) {
     const ChildResult r = run_script({"measurements/run", name});
-    EXPECT_EQ(r.status, 1) << name;
+    EXPECT_NE(r.status, 0) << name;
     EXPECT_THAT(r.err, HasSubstr("no measurement is named \"" + name + "\". These are:\n  adaptive")) << name;
     EXPECT_THAT(r.out, IsEmpty());
   }

@@ -124,10 +124,9 @@ TEST_F(SpectrophotometerCommand, DrawsCharts) {
 }
 
 TEST_F(SpectrophotometerCommand, MaterialsTakeSpectraAndMaterials) {
-  const auto reflectance = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "spectrophotometer");
-    arguments.insert(arguments.end(), {"--wavelengths", "650", "--rays", "1000", "--csv", "-"});
-    const Outcome o = frond_command(arguments);
+  const auto reflectance = [&](const Words& arguments) {
+    const Outcome o = frond_command(joined({"spectrophotometer"}, arguments),
+                                    {"--wavelengths", "650", "--rays", "1000", "--csv", "-"});
     EXPECT_EQ(o.code, 0) << o.err;
     return parse_csv(o.out).number(0, "R");
   };

@@ -5,8 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -23,7 +22,7 @@ std::string content(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-class Submit : public ::testing::Test {
+class Submit : public CommandTest {
  protected:
   void SetUp() override {
     folder_.write("scene.pbrt", R"(
@@ -36,22 +35,17 @@ Material "diffuse" "rgb reflectance" [.2 .5 .1]
 Shape "sphere" "float radius" .5
 )");
   }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-  Outcome submit(const std::string& output, const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"submit", path("scene.pbrt"), "-o", output,      "--spp",
-                                   "10",     "--tasks",          "3",  "--no-cache"};
-    words.insert(words.end(), more.begin(), more.end());
-    return frond_command(words);
+  Outcome submit(const std::string& output, const Words& more) const {
+    return frond_command({"submit", path("scene.pbrt"), "-o", output, "--spp", "10", "--tasks", "3", "--no-cache"},
+                         more);
   }
-  void expect_refusal(const std::string& output, const std::vector<std::string>& more, const std::string& message,
+  void expect_refusal(const std::string& output, const Words& more, const std::string& message,
                       const std::string& folder) const {
     const Outcome o = submit(output, more);
     EXPECT_EQ(o.code, 1);
     EXPECT_THAT(o.err, HasSubstr(message));
     EXPECT_FALSE(fs::exists(folder)) << folder;
   }
-
-  TestFolder folder_{"submit"};
 };
 
 /// Files that are written for each engine.
@@ -160,12 +154,11 @@ TEST_F(Submit, RunReportsHowAnEngineEndsAndHowToGoOn) {
 }
 
 TEST_F(Submit, QuietPutsWhatAnEnginePrintsIntoAFile) {
-  const auto run_with = [this](const std::string& script, const std::string& output, std::vector<std::string> more) {
+  const auto run_with = [this](const std::string& script, const std::string& output, const Words& more) {
     const fs::path fake = folder_.write("bin/openjd", "#!/bin/sh\n" + script);
     fs::permissions(fake, fs::perms::owner_exec, fs::perm_options::add);
     const PathOf with_fake(path("bin"));
-    more.insert(more.end(), {"--engine", "openjd", "--run"});
-    return submit(output, more);
+    return submit(output, joined(more, {"--engine", "openjd", "--run"}));
   };
   const std::string chatty = "echo task 1; echo task 2 >&2\n";
   const Outcome loud = run_with(chatty, path("a.exr"), {});

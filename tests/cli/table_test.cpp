@@ -7,7 +7,7 @@
 
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/specimens.h"
-#include "tests/cli/command.h"
+#include "tests/support/command_test.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -17,10 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-Outcome table_command(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "table");
-  return frond_command(arguments);
-}
+Outcome table_command(const Words& arguments) { return frond_command({"table"}, arguments); }
 
 TEST(TableCommand, WritesTheTableOfALeaf) {
   const TestFolder folder("table");
@@ -49,9 +46,8 @@ TEST(TableCommand, WritesToStandardOutput) {
 }
 
 TEST(TableCommand, FoldsBothSidesIntoOne) {
-  const auto table_of = [](std::vector<std::string> more) {
-    std::vector<std::string> all{"--wavelengths", "800", "-q", "-o", "-", "--angles"};
-    all.insert(all.end(), more.begin(), more.end());
+  const auto table_of = [](const Words& more) {
+    const Words all = joined({"--wavelengths", "800", "-q", "-o", "-", "--angles"}, more);
     return leaf::parse_table(table_command(all).out, "stdout");
   };
   const leaf::Table folded = table_of({"0:90:30", "--equalsides"}), both = table_of({"0:180:30"});

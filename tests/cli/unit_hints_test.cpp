@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -11,7 +10,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// Numbers that are probably in another unit than the parameter's.
-class UnitHints : public ::testing::Test {
+class UnitHints : public CommandTest {
  protected:
   /// Messages about a scene with a directive in line 2.
   Outcome check(const std::string& directive, bool is_strict = false) {
@@ -21,7 +20,6 @@ class UnitHints : public ::testing::Test {
     if (is_strict) words.emplace_back("--strict");
     return frond_command(words);
   }
-  TestFolder folder_{"units"};
 };
 
 TEST_F(UnitHints, AreWarningsWithPlaceAndValue) {

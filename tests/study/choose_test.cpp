@@ -8,10 +8,9 @@
 #include "scene/format/parser.h"
 #include "scene/scene_options.h"
 #include "study/choose/choice_report.h"
-#include "tests/cli/command.h"
 #include "tests/planted/planted.h"
 #include "tests/study/choose_scene.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond::choose {
 namespace {
@@ -22,17 +21,15 @@ using ::testing::Key;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-class Choosing : public ::testing::Test {
+class Choosing : public CommandTest {
  protected:
   void SetUp() override { setenv("SOURCE_DATE_EPOCH", "0", 1); }
 
-  Outcome render(const std::string& scene, std::vector<std::string> more = {}) const {
-    std::vector<std::string> all{
-        "render", folder_.write("scene.pbrt", scene).string(), "-o", image(), "--cache", tables().name_of("")};
-    all.insert(all.end(), more.begin(), more.end());
-    return frond_command(all);
+  Outcome render(const std::string& scene, const Words& more = {}) const {
+    return frond_command(
+        {"render", folder_.write("scene.pbrt", scene).string(), "-o", image(), "--cache", tables().name_of("")}, more);
   }
-  std::string image() const { return folder_.name_of("image.exr"); }
+  std::string image() const { return path("image.exr"); }
   std::map<std::string, std::string> header() const { return read_image(image(), {}).header.text; }
 
   /// Made once for all tests here.
@@ -40,8 +37,6 @@ class Choosing : public ::testing::Test {
     static const TestFolder folder("choose_tables");
     return folder;
   }
-
-  TestFolder folder_{"choose"};
 };
 
 const std::string kSmpte = "Option \"string wavelengths\" \"smpte\"\n";
@@ -80,9 +75,7 @@ TEST_F(Choosing, TheLogAndTheHeaderSayWhatAndWhy) {
 TEST_F(Choosing, TheSameCommandGivesTheSameFileOnAnyThreads) {
   const std::string scene = two_leaves("", "");
   const auto bytes = [&](const char* threads) {
-    std::vector<std::string> more = kLong;
-    more.insert(more.end(), {"-q", "--threads", threads});
-    EXPECT_EQ(render(scene, more).code, 0);
+    EXPECT_EQ(render(scene, joined(kLong, {"-q", "--threads", threads})).code, 0);
     std::ifstream in(image(), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
@@ -116,8 +109,7 @@ TEST_F(Choosing, WhoNamesAModelHasIt) {
 
 TEST_F(Choosing, AnySceneCanBeAskedBySwapping) {
   const std::string fixed = "\"string model\" \"leaf_simplified\"";
-  std::vector<std::string> more = kPilot;
-  more.insert(more.end(), {"--swap", "*=leaf,model=auto,maxrms=0.3"});
+  const Words more = joined(kPilot, {"--swap", "*=leaf,model=auto,maxrms=0.3"});
   const auto choice = choice_of(render(two_leaves(fixed, fixed), more));
   EXPECT_EQ(choice["rms"], 0.3);
   EXPECT_EQ(choice["leaves"].size(), 2u);
@@ -126,7 +118,7 @@ TEST_F(Choosing, AnySceneCanBeAskedBySwapping) {
 TEST_F(Choosing, TexturesOfCellWallsLeaveTheWalkAlone) {
   Image ramp(2, 1, {"R", "G", "B"});
   ramp.at(1, 0, 0) = ramp.at(1, 0, 1) = ramp.at(1, 0, 2) = 1;
-  write_image(folder_.name_of("ramp.png"), ramp, {});
+  write_image(path("ramp.png"), ramp, {});
   std::string scene = two_leaves("\"texture spongyaspect\" \"ramp\"", "");
   scene.insert(scene.find("WorldBegin\n") + 11,
                "Texture \"ramp\" \"float\" \"imagemap\" \"string filename\" \"ramp.png\"\n");

@@ -9,9 +9,8 @@
 #include "study/compare/channels.h"
 #include "study/compare/study.h"
 #include "system/file_bytes.h"
-#include "tests/cli/command.h"
 #include "tests/study/compare_scene.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond::compare {
 namespace {
@@ -21,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class CompareBands : public ::testing::Test {
+class CompareBands : public CommandTest {
  protected:
   ChannelList channels(const std::string& wavelengths, std::string_view scene = kLeafScene) const {
     const Log& quiet = silent_log();
@@ -30,26 +29,13 @@ class CompareBands : public ::testing::Test {
                       {.scene = folder_.write("scene.pbrt", scene).string(), .wavelengths = wavelengths, .size = 8});
     return channels_of(*study.scene(parse_candidate("leaf_lambert")));
   }
-  Outcome compare(std::vector<std::string> more) const {
-    std::vector<std::string> all{"compare",
-                                 folder_.write("scene.pbrt", kLeafScene).string(),
-                                 "-o",
-                                 folder_.name_of("report"),
-                                 "--no-cache",
-                                 "--size",
-                                 "16",
-                                 "--spp",
-                                 "4",
-                                 "--reference-spp",
-                                 "8",
-                                 "--materials",
-                                 "abm,leaf_lambert"};
-    all.insert(all.end(), more.begin(), more.end());
-    return frond_command(all);
+  Outcome compare(const Words& more) const {
+    return frond_command(
+        {"compare", folder_.write("scene.pbrt", kLeafScene).string(), "-o", path("report"), "--no-cache", "--size",
+         "16", "--spp", "4", "--reference-spp", "8", "--materials", "abm,leaf_lambert"},
+        more);
   }
-  std::string file(const std::string& name) const { return read_file_bytes(folder_.name_of("report/" + name), {}); }
-
-  TestFolder folder_{"compare_bands"};
+  std::string file(const std::string& name) const { return read_file_bytes(path("report/" + name), {}); }
 };
 
 TEST_F(CompareBands, CountInWhitesOfTheScenesLight) {
@@ -71,14 +57,14 @@ TEST_F(CompareBands, AResponseCountsItsMeanWhite) {
   folder_.write("flat.spd", "500 1  600 1");
   double mean = 0;
   for (int i = 0; i < 1000; ++i) mean += double(unit_d65()->at(500.05f + 0.1f * float(i))) / 1000;
-  EXPECT_NEAR(channels("bands,responses=" + folder_.name_of("flat.spd")).white[0], mean, 1e-3 * mean);
+  EXPECT_NEAR(channels("bands,responses=" + path("flat.spd")).white[0], mean, 1e-3 * mean);
 }
 
 /// Two nanometres of a table that is 0 elsewhere.
 TEST_F(CompareBands, ANarrowResponseCountsItsOwnWhite) {
   folder_.write("narrow.spd", "400 0  563.1 0  564.1 1  565.1 0  800 0");
   const double d65 = double(unit_d65()->at(564.1f));  // linear around it
-  EXPECT_NEAR(channels("bands,responses=" + folder_.name_of("narrow.spd")).white[0], d65, 1e-6 * d65);
+  EXPECT_NEAR(channels("bands,responses=" + path("narrow.spd")).white[0], d65, 1e-6 * d65);
 }
 
 TEST_F(CompareBands, AreSeenAsColoursOrThreeOfThemAsFalseOnes) {
@@ -100,7 +86,7 @@ TEST_F(CompareBands, WhiteIsShownWhite) {
 TEST_F(CompareBands, OnlyTheSameOnesAreAlike) {
   folder_.write("a.spd", "500 1  600 1");
   folder_.write("b.spd", "500 1  550 0.5  600 1");  // the same centre
-  const auto of = [&](const char* name) { return channels("bands,responses=" + folder_.name_of(name)); };
+  const auto of = [&](const char* name) { return channels("bands,responses=" + path(name)); };
   EXPECT_TRUE(same_channels(of("a.spd"), of("a.spd")));
   EXPECT_FALSE(same_channels(of("a.spd"), of("b.spd")));
   EXPECT_FALSE(same_channels(of("a.spd"), channels("bands,wavelengths=550")));
@@ -151,10 +137,9 @@ TEST_F(CompareBands, AreMeasuredOnceAllOfThemAreSeen) {
 TEST_F(CompareBands, RefuseMoreThanTheMachineHolds) {
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)), bands = 301, bytes_a_band = 48;
   const double size = std::sqrt(2 * 0.3 * memory / (bands * bytes_a_band));  // the image is twice as wide as high
-  const Outcome o =
-      frond_command({"compare", folder_.write("scene.pbrt", kLeafScene).string(), "-o", folder_.name_of("report"),
-                     "--no-cache", "--materials", "abm,leaf_lambert", "--wavelengths",
-                     "bands,lambdamin=400,lambdamax=700,step=1", "--size", fmt::format("{:.0f}", size)});
+  const Outcome o = frond_command({"compare", folder_.write("scene.pbrt", kLeafScene).string(), "-o", path("report"),
+                                   "--no-cache", "--materials", "abm,leaf_lambert", "--wavelengths",
+                                   "bands,lambdamin=400,lambdamax=700,step=1", "--size", fmt::format("{:.0f}", size)});
   EXPECT_THAT(o.err, AllOf(HasSubstr("6 films of"), HasSubstr("--size takes fewer pixels")));
 }
 

@@ -5,9 +5,8 @@
 
 #include "study/compare/error_unit.h"
 #include "system/file_bytes.h"
-#include "tests/cli/command.h"
 #include "tests/study/compare_scene.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond::compare {
 namespace {
@@ -33,27 +32,20 @@ Material "diffuse" "spectrum reflectance" [300 0.2  900 0.2]
 Shape "trianglemesh" "integer indices" [0 1 2  0 2 3] "point3 P" [0 -9 0  9 -9 0  9 9 0  0 9 0]
 )";
 
-class CompareRelative : public ::testing::Test {
+class CompareRelative : public CommandTest {
  protected:
-  Outcome compare(std::vector<std::string> more, std::string_view scene) const {
-    std::vector<std::string> all{"compare",    folder_.write("scene.pbrt", scene).string(),
-                                 "-o",         folder_.name_of("report"),
-                                 "--no-cache", "--size",
-                                 "16",         "--spp",
-                                 "2",          "--reference-spp",
-                                 "4"};
-    all.insert(all.end(), more.begin(), more.end());
-    return frond_command(all);
+  Outcome compare(const Words& more, std::string_view scene) const {
+    return frond_command({"compare", folder_.write("scene.pbrt", scene).string(), "-o", path("report"), "--no-cache",
+                          "--size", "16", "--spp", "2", "--reference-spp", "4"},
+                         more);
   }
   /// A leaf that reflects so much at 551 and at 800 nm, evenly into all directions, and lets nothing through.
   std::string leaf(const std::string& name, double at_551, double at_800) const {
     const std::string rows = fmt::format("0,551,0,{},0\n0,800,0,{},0\n", at_551, at_800);
     return "leaf_simplified,tablefile=" + folder_.write(name, "theta_deg,wavelength_nm,Rs,Rd,T\n" + rows).string();
   }
-  std::string file(const std::string& name) const { return read_file_bytes(folder_.name_of("report/" + name), {}); }
+  std::string file(const std::string& name) const { return read_file_bytes(path("report/" + name), {}); }
   nlohmann::json json() const { return nlohmann::json::parse(file("compare.json")); }
-
-  TestFolder folder_{"compare_relative"};
 };
 
 /// Exact but for the rounding of pixels: no figure here is random.
@@ -112,7 +104,7 @@ TEST_F(CompareRelative, EveryOutputSaysSo) {
 TEST_F(CompareRelative, DoesNotGoWithATargetThatIsAbsolute) {
   EXPECT_THAT(compare({"--wavelengths", "smpte", "--target", "front", "--relative"}, kLeafScene).err,
               HasSubstr("--target excludes --relative"));
-  EXPECT_FALSE(std::filesystem::exists(folder_.name_of("report")));
+  EXPECT_FALSE(std::filesystem::exists(path("report")));
 }
 
 TEST_F(CompareRelative, NothingIsRelativeToBlack) {

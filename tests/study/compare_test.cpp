@@ -8,9 +8,8 @@
 #include "study/compare/film_images.h"
 #include "system/child_process.h"
 #include "system/file_bytes.h"
-#include "tests/cli/command.h"
 #include "tests/study/compare_scene.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 namespace frond {
 namespace {
@@ -19,31 +18,17 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class CompareCommand : public ::testing::Test {
+class CompareCommand : public CommandTest {
  protected:
-  Outcome compare(std::vector<std::string> more, std::string_view scene = kLeafScene) const {
-    std::vector<std::string> all{"compare",
-                                 folder_.write("scene.pbrt", scene).string(),
-                                 "-o",
-                                 report(),
-                                 "--cache",
-                                 folder_.name_of("cache"),
-                                 "--wavelengths",
-                                 "smpte",
-                                 "--size",
-                                 "16",
-                                 "--spp",
-                                 "4",
-                                 "--reference-spp",
-                                 "8"};
-    all.insert(all.end(), more.begin(), more.end());
-    return frond_command(all);
+  Outcome compare(const Words& more, std::string_view scene = kLeafScene) const {
+    return frond_command(
+        {"compare", folder_.write("scene.pbrt", scene).string(), "-o", report(), "--cache", path("cache"),
+         "--wavelengths", "smpte", "--size", "16", "--spp", "4", "--reference-spp", "8"},
+        more);
   }
-  std::string report() const { return folder_.name_of("report"); }
+  std::string report() const { return path("report"); }
   std::string file(const std::string& name) const { return read_file_bytes(report() + "/" + name, {}); }
   nlohmann::json json() const { return nlohmann::json::parse(file("compare.json")); }
-
-  TestFolder folder_{"compare"};
 };
 
 TEST_F(CompareCommand, MeasuresEveryCandidateOnEveryRung) {
@@ -119,7 +104,7 @@ TEST_F(CompareCommand, IsReadWithoutThePaper) {
   for (const std::string& text : {o.out, html.substr(0, html.find("<script"))})
     EXPECT_THAT(text, AllOf(Not(HasSubstr("(a)")), Not(HasSubstr("(b)")), Not(HasSubstr("(c")), Not(HasSubstr("(d)")),
                             Not(HasSubstr("manner"))));
-  const std::string scene = folder_.name_of("scene.pbrt");
+  const std::string scene = path("scene.pbrt");
   EXPECT_THAT(html, HasSubstr("<code>frond compare " + scene + " --materials 'abm;it'\\''s:leaf_simplified'"));
   EXPECT_THAT(html, HasSubstr(" --exposure=-1 "));
 }
@@ -130,9 +115,8 @@ TEST_F(CompareCommand, ContinuesTheReferenceFromTheCache) {
   ASSERT_EQ(compare({"--materials", "abm"}).code, 0);
   const auto cached = json();
   EXPECT_EQ(cached["reference_samples_from_cache"], 8);
-  ASSERT_EQ(frond_command({"compare", folder_.name_of("scene.pbrt"), "-o", report(), "--cache",
-                           folder_.name_of("cache"), "--wavelengths", "smpte", "--size", "16", "--spp", "2",
-                           "--reference-spp", "16", "-q", "--materials", "abm"})
+  ASSERT_EQ(frond_command({"compare", path("scene.pbrt"), "-o", report(), "--cache", path("cache"), "--wavelengths",
+                           "smpte", "--size", "16", "--spp", "2", "--reference-spp", "16", "-q", "--materials", "abm"})
                 .code,
             0);
   const auto continued = json();
@@ -178,8 +162,7 @@ TEST_F(CompareCommand, BadRequestsAreRefused) {
 TEST_F(CompareCommand, AFolderThatCannotBeIsRefusedFirst) {
   folder_.write("file", "");
   for (const char* folder : {"file", "file/report"})
-    EXPECT_EQ(frond_command({"compare", "/no/such/scene.pbrt", "-o", folder_.name_of(folder)})
-                  .err.find("frond: cannot write"),
+    EXPECT_EQ(frond_command({"compare", "/no/such/scene.pbrt", "-o", path(folder)}).err.find("frond: cannot write"),
               0u);
 }
 
@@ -188,8 +171,7 @@ TEST_F(CompareCommand, TheReportRunsInABrowser) {
   const std::vector<std::string> browser{"chromium", "--headless=new", "--no-sandbox", "--disable-gpu"};
   const auto run = [&](const std::string& what, const std::string& url) {
     auto command = browser;
-    command.insert(command.end(),
-                   {"--user-data-dir=" + folder_.name_of("profile"), "--virtual-time-budget=5000", what, url});
+    command.insert(command.end(), {"--user-data-dir=" + path("profile"), "--virtual-time-budget=5000", what, url});
     return run_child(command, "");
   };
   ASSERT_EQ(compare({"--materials", "abm,leaf_simplified"}).code, 0);
@@ -203,7 +185,7 @@ TEST_F(CompareCommand, TheReportRunsInABrowser) {
                                                               {"#mode=wipe&zoom=2", 16 * 2},
                                                               {"#mode=flip&zoom=8&exposure=2", 16 * 8}})
     EXPECT_THAT(run("--dump-dom", url + link)->out, HasSubstr(fmt::format("width=\"{}\"", width))) << link;
-  const std::string screenshot = folder_.name_of("screen.png");
+  const std::string screenshot = path("screen.png");
   run("--screenshot=" + screenshot, url);
   EXPECT_EQ(read_file_bytes(screenshot, {}).substr(1, 3), "PNG");
 }
