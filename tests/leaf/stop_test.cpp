@@ -1,26 +1,17 @@
 // Solutions and walks end when a stop is requested. The stop is requested before each call.
 
-#include "core/stop.h"
-
-#include <gtest/gtest.h>
-
 #include <vector>
 
 #include "leaf/solve/modes.h"
 #include "leaf/solve/solver.h"
 #include "leaf/tissue/specimens.h"
 #include "leaf/walk/batch_walk.h"
+#include "tests/support/expect_stopped.h"
 
 namespace frond::leaf {
 namespace {
 
-template <class Act>
-void expect_stopped(const Act& act) {
-  std::stop_source source;
-  source.request_stop();
-  const StopScope stop(source.get_token());
-  EXPECT_THROW(act(), Stopped);
-}
+using test::expect_stopped;
 
 Tissue soybean() {
   static const TissueModel model(find_specimen("soybean")->params);

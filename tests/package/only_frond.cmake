@@ -4,12 +4,7 @@
 file(REMOVE_RECURSE "${WORK_DIR}")
 set(build "${WORK_DIR}/build")
 set(prefix "${WORK_DIR}/prefix")
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${result}\n${output}")
-  endif()
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/run_command.cmake")
 # In place of the compiler: the words of Ninja's rules are -o FILE and -MF FILE.
 file(WRITE "${WORK_DIR}/copy" "#!/bin/sh\nfrom='${BUILD_DIR}'\n" [=[
 previous=

@@ -1,26 +1,17 @@
 // Long steps of loading a scene end when a stop is requested. The stop is requested before each call.
 
-#include "core/stop.h"
-
-#include <gtest/gtest.h>
-
 #include "media/sampled_grid.h"
 #include "scene/geometry/geometry.h"
 #include "shapes/subdivision.h"
 #include "spectra/color/color_space.h"
 #include "spectra/color/reflectance_table.h"
+#include "tests/support/expect_stopped.h"
 #include "textures/mip_map.h"
 
 namespace frond {
 namespace {
 
-template <class Act>
-void expect_stopped(const Act& act) {
-  std::stop_source source;
-  source.request_stop();
-  const StopScope stop(source.get_token());
-  EXPECT_THROW(act(), Stopped);
-}
+using test::expect_stopped;
 
 /// A flat mesh of `side` x `side` squares.
 std::shared_ptr<TriangleMesh> flat_mesh(uint32_t side) {
