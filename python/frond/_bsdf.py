@@ -3,9 +3,24 @@
 import math
 
 from . import _frond
-from ._measure import _session_of, bands_of, material_text
-from ._session import path_text
-from ._values import array_of, number, reals, whole
+from ._records import no_text
+from ._session import Scene, checked_session
+from ._values import array_of, checked_text, is_array, number, path_text, reals, scalar, texts, whole
+
+
+def material_text(material):
+    """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas. Raises TypeError."""
+    material = scalar(material)
+    if isinstance(material, str):
+        return checked_text(material, "material")
+    if isinstance(material, (bytes, Scene)) or not hasattr(material, "__iter__") or hasattr(material, "items") and not is_array(material):
+        raise TypeError(f"material: {no_text(material)}")
+    return ",".join(checked_text(scalar(part), "material") for part in texts(material, "material"))
+
+
+def bands_of(values):
+    """Returns wavelengths in nm as floats. Raises TypeError or ValueError."""
+    return reals(values, "wavelengths", "nm")
 
 
 def _seed_of(seed):
@@ -26,7 +41,7 @@ class FlatBsdf:
         self.wavelengths = bands_of(wavelengths)
         # A path has up to four wavelengths.
         groups = [self.wavelengths[i:i + 4] for i in range(0, max(len(self.wavelengths), 1), 4)]
-        self._bsdfs = [_frond.FlatBsdf(_session_of(session), material_text(material), group) for group in groups]
+        self._bsdfs = [_frond.FlatBsdf(checked_session(session)._session, material_text(material), group) for group in groups]
 
     is_stochastic = property(lambda self: self._bsdfs[0].is_stochastic, doc="True if `f` is a random estimate.")
     is_reciprocal = property(lambda self: self._bsdfs[0].is_reciprocal, doc="True if the material claims f(a, b) = f(b, a).")
@@ -85,7 +100,7 @@ def leaf_table(material, wavelengths, *, tolerance=5e-4, depths=None, session=No
         depths = tuple(reals(depths, "depths"))
         if len(depths) != 2:
             raise ValueError(f"depths: (least, most) is needed, {len(depths)} numbers are given")
-    return LeafTable(_frond.leaf_table(_session_of(session), material_text(material), sorted(bands_of(wavelengths)),
+    return LeafTable(_frond.leaf_table(checked_session(session)._session, material_text(material), sorted(bands_of(wavelengths)),
                                        float(number(tolerance, "tolerance")), depths))
 
 

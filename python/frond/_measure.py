@@ -1,23 +1,14 @@
 """Jobs whose results Python returns as arrays or objects: instruments, radiometry, conformance and fits."""
 
 import inspect
-import os
 import re
 
 from . import _frond
-from ._jobs import FUNCTIONS, JOBS, _table, by_alias, no_text, run
-from ._session import Scene, checked_session, checked_text, path_text
-from ._values import is_array, named, number, reals, scalar, table_text, texts, whole
-
-
-def material_text(material):
-    """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas. Raises TypeError."""
-    material = scalar(material)
-    if isinstance(material, str):
-        return checked_text(material, "material")
-    if isinstance(material, (bytes, Scene)) or not hasattr(material, "__iter__") or hasattr(material, "items") and not is_array(material):
-        raise TypeError(f"material: {no_text(material)}")
-    return ",".join(checked_text(scalar(part), "material") for part in texts(material, "material"))
+from ._bsdf import Bsdf, bands_of, material_text
+from ._jobs import FUNCTIONS, _table, run
+from ._records import JOBS, by_alias
+from ._session import checked_session
+from ._values import checked_text, is_array, named, number, path_text, reals, scalar, table_text, texts, whole
 
 
 def _registered(bsdf, session):
@@ -35,19 +26,9 @@ def _registered(bsdf, session):
 
 def _of_bsdf(material, session):
     """Returns a material as text; an object of `frond.Bsdf` is registered."""
-    from ._bsdf import Bsdf
     if isinstance(material, type) and issubclass(material, Bsdf):
         raise TypeError(f"material: {material.__name__} is a class; give an object of it, as in {material.__name__}()")
     return _registered(material, session) if isinstance(material, Bsdf) else material_text(material)
-
-
-def bands_of(values):
-    """Returns wavelengths in nm as floats. Raises TypeError or ValueError."""
-    return reals(values, "wavelengths", "nm")
-
-
-def _session_of(session):
-    return checked_session(session)._session
 
 
 def names(kind="material", *, session=None):
@@ -160,7 +141,6 @@ def conform(material, *, session=None, **options):
 @_with_keywords_of("bench", "Result")
 def bench(material, with_=None, angles="0,45,80", *, session=None, **options):
     """Measures the cost of BSDFs. material, with_: text, or objects of `frond.Bsdf`."""
-    from ._bsdf import Bsdf
     if isinstance(with_, Bsdf):
         with_ = [with_]
     if isinstance(with_, (list, tuple)):
@@ -171,7 +151,6 @@ def bench(material, with_=None, angles="0,45,80", *, session=None, **options):
 def register_material(name, bsdf, *, session=None):
     """Registers an object of `frond.Bsdf` as a material that scenes of the session name by `name`. Its renders use one
     core, because each call needs Python's lock. Raises TypeError or ValueError."""
-    from ._bsdf import Bsdf
     if not isinstance(bsdf, Bsdf):
         raise TypeError(f"bsdf: an object of a subclass of frond.Bsdf is needed, not {named(bsdf)}")
     if not re.fullmatch(r"[\w.-]+", checked_text(name, "name")):

@@ -7,7 +7,8 @@ import threading
 from pathlib import Path
 
 from . import _frond
-from ._values import array_of, file_text, flag, named, number, scalar, texts, whole
+from ._records import JOBS, arguments, by_alias, python_name
+from ._values import array_of, checked_text, flag, named, number, path_text, scalar, texts, whole
 
 
 def _show(progress):
@@ -25,25 +26,6 @@ def _show(progress):
         sys.stderr.flush()
 
     return line
-
-
-def checked_text(text, what):
-    """Returns the text. Raises TypeError if it is not a str, and ValueError for a zero byte, at which it would be cut off, and for
-    what UTF-8 cannot hold."""
-    if not isinstance(text, str):
-        raise TypeError(f"{what}: text is needed, not {named(text)}")
-    if "\0" in text:
-        raise ValueError(f"{what}: a text without zero bytes is needed, not {text!r}")
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        raise ValueError(f"{what}: {text!r} is not UTF-8") from None
-    return text
-
-
-def path_text(path, what="path"):
-    """Returns a path (str, bytes or os.PathLike) as text. Raises the errors of `file_text` and `checked_text`."""
-    return checked_text(file_text(path, what), what)
 
 
 def _samples_of(samples, default):
@@ -102,7 +84,6 @@ class Session:
         return self._scene(os.path.join(path_text(folder, "folder"), "<string>"), checked_text(text, "text"), **over)
 
     def _scene(self, path, text, *, adaptive=False, **over):
-        from ._jobs import JOBS, arguments, by_alias, python_name
         if over.get("samples") is not None and over.get("spp") is not None:
             raise TypeError("samples and spp are two names of the same number")
         samples = over.pop("samples", None)

@@ -241,6 +241,25 @@ def file_text(value, what):
     return os.fsdecode(value)
 
 
+def checked_text(text, what):
+    """Returns the text. Raises TypeError if it is not a str, and ValueError for a zero byte, at which it would be cut off, and for
+    what UTF-8 cannot hold."""
+    if not isinstance(text, str):
+        raise TypeError(f"{what}: text is needed, not {named(text)}")
+    if "\0" in text:
+        raise ValueError(f"{what}: a text without zero bytes is needed, not {text!r}")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{what}: {text!r} is not UTF-8") from None
+    return text
+
+
+def path_text(path, what="path"):
+    """Returns a path (str, bytes or os.PathLike) as text. Raises the errors of `file_text` and `checked_text`."""
+    return checked_text(file_text(path, what), what)
+
+
 def table_text(table, what):
     """Returns a table as CSV: a data frame, a Dataset of one dimension or more, a structured array, or a dictionary of columns."""
     if hasattr(table, "data_vars") and hasattr(table, "to_dataframe"):

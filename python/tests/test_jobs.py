@@ -10,11 +10,11 @@ from pathlib import Path
 import frond
 import numpy
 import pytest
-from frond import _frond, _jobs, _stubs
+from frond import _frond, _jobs, _records, _stubs
 
 FROND = os.environ["FROND"]
 ROOT = Path(__file__).resolve().parents[2]
-JOBS = {name: job for name, job in _jobs.JOBS.items()}
+JOBS = {name: job for name, job in _records.JOBS.items()}
 PARAMS = [(name, param) for name, job in JOBS.items() for param in job["params"]]
 IDS = [f"{name}-{param['name']}" for name, param in PARAMS]
 
@@ -73,9 +73,9 @@ def test_every_front_end_documents_every_parameter(name, param, documents):
                    re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", line.split("|")[1]))
         for fact in (param["default"], param["unit"], *param["choices"]):
             assert fact in row
-    name = _jobs.python_name(name)
+    name = _records.python_name(name)
     function = getattr(frond, name)
-    keyword = _jobs.python_name(param["name"])
+    keyword = _records.python_name(param["name"])
     parameters = inspect.signature(_jobs.FUNCTIONS[name]).parameters
     default = parameters[keyword].default
     expected = {"flag": False}.get(param["kind"], param["default"] or None)
@@ -132,7 +132,7 @@ def test_bad_values_are_refused_alike(name, param, value):
         _frond.run(session, name, {key: [text] * (count if key == "images" else 1) for key, text in given.items()}, None)
     of_python = str(caught.value)
     spelled = param["name"] if param["positional"] else "--" + param["name"]
-    assert done.stderr == "frond: " + of_python.replace(_jobs.python_name(param["name"]) + ":", spelled + ":", 1) + "\n"
+    assert done.stderr == "frond: " + of_python.replace(_records.python_name(param["name"]) + ":", spelled + ":", 1) + "\n"
     assert " needed; " in of_python and f'"{value}"' in of_python
 
 
@@ -275,8 +275,8 @@ def test_tables_are_the_same_from_both(name, given, scene_text, reference, tmp_p
     result = frond.run(name, csv="python.csv", json="python.json", **given)
     words = []
     for param in JOBS[name]["params"]:
-        if (value := given.get(_jobs.python_name(param["name"]))) is not None:
-            for text in _jobs.words(param, value):
+        if (value := given.get(_records.python_name(param["name"]))) is not None:
+            for text in _records.words(param, value):
                 words.append(text if param["positional"] else f"--{param['name']}={text}")
     done = frond_command(name, *words, "--csv", "command.csv", "--json", "command.json", "-q")
     assert done.returncode == 0, done.stderr

@@ -9,9 +9,9 @@ import frond
 import numpy
 import pytest
 from conftest import SCENE
-from frond import _frond, _jobs
+from frond import _frond, _records
 
-JOBS = _jobs.JOBS
+JOBS = _records.JOBS
 
 #: A valid value for each type of a text.
 TEXTS = {
@@ -67,7 +67,7 @@ def given_of(job, name):
     chosen = {n for n, p in params.items() if p["required"]} | {name}
     for needed in re.findall(r"Needs --([a-z-]+)", params[name]["doc"]):
         chosen.add(needed)
-    return {_jobs.python_name(n): value_of(params[n]) for n in chosen}
+    return {_records.python_name(n): value_of(params[n]) for n in chosen}
 
 
 CASES = [(name, param) for name, job in JOBS.items() for param in job["params"]]
@@ -77,13 +77,13 @@ CASES = [(name, param) for name, job in JOBS.items() for param in job["params"]]
 def test_each_keyword_reaches_its_command(name, param, capture, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     given = given_of(JOBS[name], param["name"])
-    keyword = _jobs.python_name(param["name"])
+    keyword = _records.python_name(param["name"])
     if name == "fit" and keyword not in ("file", "data"):
         given |= {"wavelengths": [500, 510], "R": [0.1, 0.2]}
     with pytest.raises(Captured) as caught:
-        getattr(frond, _jobs.python_name(name))(**given)
+        getattr(frond, _records.python_name(name))(**given)
     job, arguments = caught.value.args
-    expected = _jobs.words(param, given[keyword])
+    expected = _records.words(param, given[keyword])
     if name == "goniophotometer" and keyword in ("wavelengths", "angles"):
         expected = [",".join(repr(float(v)) for v in given[keyword])]
     assert job == name and arguments[param["name"]] == expected
@@ -94,17 +94,17 @@ def test_each_keyword_reaches_its_command(name, param, capture, tmp_path, monkey
 def test_each_other_name_of_a_keyword_too(name, param, capture):
     for alias in (alias for alias in param["aliases"].split(",") if len(alias) > 1):
         given = given_of(JOBS[name], param["name"])
-        given[_jobs.python_name(alias)] = given.pop(_jobs.python_name(param["name"]))
+        given[_records.python_name(alias)] = given.pop(_records.python_name(param["name"]))
         with pytest.raises(Captured) as caught:
-            getattr(frond, _jobs.python_name(name))(**given)
+            getattr(frond, _records.python_name(name))(**given)
         assert param["name"] in caught.value.args[1]
 
 
 @pytest.mark.parametrize("name", JOBS)
 def test_signatures_name_what_is_taken(name, capture):
-    function = getattr(frond, _jobs.python_name(name))
+    function = getattr(frond, _records.python_name(name))
     parameters = inspect.signature(function).parameters
-    assert {_jobs.python_name(p["name"]) for p in JOBS[name]["params"]} <= set(parameters)
+    assert {_records.python_name(p["name"]) for p in JOBS[name]["params"]} <= set(parameters)
     assert {"progress", "session"} <= set(parameters)
     with pytest.raises(TypeError, match="no_such_keyword"):
         function(**given_of(JOBS[name], JOBS[name]["params"][0]["name"]), no_such_keyword=1)
@@ -114,14 +114,14 @@ def test_signatures_name_what_is_taken(name, capture):
 def test_none_is_not_given(name, capture):
     """None for every keyword that may be left out is the same as to leave it out."""
     job = JOBS[name]
-    required = {_jobs.python_name(p["name"]): value_of(p) for p in job["params"] if p["required"]}
+    required = {_records.python_name(p["name"]): value_of(p) for p in job["params"] if p["required"]}
     if name == "fit":
         required = {"file": "leaf.csv"}
-    everything = {_jobs.python_name(p["name"]): None for p in job["params"]} | required
+    everything = {_records.python_name(p["name"]): None for p in job["params"]} | required
     found = []
     for given in (required, everything):
         try:
-            getattr(frond, _jobs.python_name(name))(**given)
+            getattr(frond, _records.python_name(name))(**given)
         except Captured as captured:
             found.append(captured.args)
     assert len(found) == 2
@@ -137,7 +137,7 @@ LOADING = [p for p in JOBS["render"]["params"] if p["name"] not in frond._sessio
 @pytest.mark.parametrize("param", LOADING, ids=[p["name"] for p in LOADING])
 def test_each_keyword_of_load(param):
     value = (0, 3) if param["name"] == "pixel" else value_of(param)
-    scene = frond.loads(SCENE, **{_jobs.python_name(param["name"]): value, "session": SESSION})
+    scene = frond.loads(SCENE, **{_records.python_name(param["name"]): value, "session": SESSION})
     assert scene.render(2).array.size > 0
 
 

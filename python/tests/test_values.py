@@ -15,7 +15,7 @@ import pandas
 import pytest
 import xarray
 from conftest import SCENE
-from frond import _jobs
+from frond import _records
 
 NM = [450.0, 551.0, 700.0]
 
@@ -245,26 +245,26 @@ WRONG = {
 WRONG["seed"] = WRONG["count"]
 #: Where numbers and flags have a meaning as text.
 MEANT = {("text", "WAVELENGTHS"), ("text", "STOPS"), ("text", "KELVIN"), ("text", "R,G,B"), ("text", "THETAxPHI"), ("text", "FIRST:END"), ("text", "CSV")}
-PARAMS = {f"{name}-{p['name']}": (name, p) for name, job in _jobs.JOBS.items() for p in job["params"]}
+PARAMS = {f"{name}-{p['name']}": (name, p) for name, job in _records.JOBS.items() for p in job["params"]}
 
 
 @pytest.mark.parametrize("name", PARAMS)
 def test_a_wrong_type_is_named(name):
     """Each error has the keyword, and the type that was given, in words that a reader of Python knows."""
     job, param = PARAMS[name]
-    keyword = _jobs.python_name(param["name"])
+    keyword = _records.python_name(param["name"])
     for value in WRONG[param["kind"]]:
         if (param["kind"], param["type"]) in MEANT and not isinstance(value, (dict, set)) or value is True and param["implied"]:
             continue
         given = {keyword: value}
         if isinstance(value, str):
             with pytest.raises(frond.InputError, match=f'{keyword}: .* "{value}" was given'):
-                frond._frond.check_arguments(job, _jobs.arguments(_jobs.JOBS[job]["params"], given))
+                frond._frond.check_arguments(job, _records.arguments(_records.JOBS[job]["params"], given))
             continue
         if isinstance(value, dict) and "=" in param["type"] + param["type"].replace("SWAP", "="):
             continue  # a mapping without items
         with pytest.raises((TypeError, ValueError)) as caught:
-            frond._frond.check_arguments(job, _jobs.arguments(_jobs.JOBS[job]["params"], given))
+            frond._frond.check_arguments(job, _records.arguments(_records.JOBS[job]["params"], given))
         text = str(caught.value)
         assert text.startswith(f"{keyword}: "), text
         assert " needed" in text and "iterable" not in text and "fspath" not in text and "codec" not in text, text
