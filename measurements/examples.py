@@ -108,4 +108,5 @@ def main():
         raise SystemExit("These examples failed:\n" + "\n".join(failed))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Renders random scenes of all plug-ins in one process for hours."""
