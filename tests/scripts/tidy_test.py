@@ -1,8 +1,9 @@
 """scripts/tidy: which sources it looks at, and when it fails."""
 
+import re
 import unittest
 
-from scripts_folder import FolderTest
+from scripts_folder import SCRIPTS, FolderTest
 
 FINDING = 'echo "/x/src/leaf.h:1:2: error: something [a-check]"'
 
@@ -77,6 +78,14 @@ class Tidy(FolderTest):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("clang-tidy 14 is needed", done.stderr)
         self.assertEqual(self.calls("clang-tidy"), "")
+
+
+class Settings(unittest.TestCase):
+    def test_the_sources_that_the_reasons_name_exist(self):
+        root = SCRIPTS.parent
+        named = re.findall(r"[\w/]+\.(?:h|cpp)\b", (root / ".clang-tidy").read_text(encoding="utf-8"))
+        self.assertIn("leaf/walk/batch_lanes.h", named)
+        self.assertEqual([name for name in named if not (root / "src" / name).is_file()], [])
 
 
 if __name__ == "__main__":
