@@ -1,14 +1,14 @@
-# Sourced by scripts that try frond in a Debian with nothing in it. Needs root, for chroot. DEBIAN_MIRROR is where packages come
-# from; http://deb.debian.org/debian by default.
+# Sourced by scripts that test frond in a minimal Debian. Needs root, for chroot. DEBIAN_MIRROR is the address of the package archive;
+# default: http://deb.debian.org/debian.
 
-# bare SUITE FOLDER: a Debian with nothing in it but what apt needs.
+# bare SUITE FOLDER: makes a Debian with only the packages that apt needs.
 bare() {
   as_root rm -rf "$2"
   quietly as_root debootstrap --variant=minbase "$1" "$2" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
   as_root cp /etc/resolv.conf "$2/etc/resolv.conf"
 }
 
-# inside FOLDER COMMAND...: with /proc, from which the dynamic linker knows where a program is.
+# inside FOLDER COMMAND...: runs it there with /proc, in which the dynamic linker finds the program's path.
 inside() {
   local folder=$1
   shift
@@ -17,7 +17,7 @@ inside() {
     unshare --mount sh -c 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"' "$folder" "$@"
 }
 
-# apt_inside FOLDER PACKAGE...
+# apt_inside FOLDER PACKAGE...: installs packages there.
 apt_inside() {
   local folder=$1
   shift

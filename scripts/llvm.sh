@@ -1,12 +1,12 @@
-# Sourced by the other scripts: clang-format and clang-tidy of the one version that this code follows, since others format
-# and find otherwise.
+# Sourced by the other scripts: clang-format and clang-tidy of the one version that this code follows, because results differ between
+# versions.
 
 llvm_version=14
-# PyPI's, for Debian 13, which packages 17 and later alone. Its clang-tidy lacks the compiler's headers.
+# From PyPI for Debian 13, which packages only 17 and later. PyPI's clang-tidy lacks the compiler's headers.
 declare -A llvm_wheels=([clang-format]=14.0.6)
 llvm_tools="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/build/tools"
 
-# llvm_tool NAME: prints the command; fails where there is none of this version, and says what there is.
+# llvm_tool NAME: prints the command of this version; without one it fails and names the versions that are installed.
 llvm_tool() {
   local command version others=() elsewhere=""
   [ -z "${llvm_wheels[$1]:-}" ] || elsewhere=", there PyPI's $1 ${llvm_wheels[$1]}"
@@ -28,13 +28,13 @@ llvm_tool() {
   return 1
 }
 
-# llvm_packaged NAME: whether this Debian has it.
+# llvm_packaged NAME: succeeds if this Debian packages it.
 llvm_packaged() {
   as_root apt-get update -qq
   apt-cache show "$1-$llvm_version" >/dev/null 2>&1
 }
 
-# install_llvm NAME: after setup.sh, whose install_missing it uses. Fails where it cannot be had.
+# install_llvm NAME: needs setup.sh (install_missing). Fails if the tool cannot be installed.
 install_llvm() {
   local wheel=${llvm_wheels[$1]:-}
   llvm_tool "$1" >/dev/null 2>&1 && return

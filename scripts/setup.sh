@@ -1,15 +1,15 @@
-# Sourced by the other scripts: ends them at the first error, installs what is missing, builds the release preset. Leaves
-# FROND_BUILD and FROND set.
+# Sourced by the other scripts: exits at the first error; functions that install missing packages and build the release preset. Sets
+# root, FROND_BUILD and FROND.
 set -euo pipefail
 
-# -h and --help print the comment at the head of the script that sources this, and nothing is installed.
+# -h and --help print the comment at the head of the sourcing script and exit.
 for argument in "$@"; do
   case "$argument" in
     -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "${BASH_SOURCE[1]}"; exit 0 ;;
   esac
 done
 
-# no_arguments "$@": for scripts that take none.
+# no_arguments "$@": exits with an error if there are arguments.
 no_arguments() {
   [ $# -eq 0 ] && return
   echo "usage: scripts/$(basename "${BASH_SOURCE[1]}")" >&2
@@ -20,9 +20,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 FROND_BUILD="$root/build/release"
 FROND="$FROND_BUILD/frond"
 
-configure_options=()  # for CMake, beside those of the preset
+configure_options=()  # options of CMake in addition to the preset's
 
-# Debian's packages that the project needs to build; callers add their own.
+# Debian packages that the build needs.
 build_packages=(
   g++ cmake ninja-build pkg-config ccache
   libembree-dev libopenimageio-dev libwebp-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
@@ -47,7 +47,7 @@ install_missing() {
 
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
 
-# quietly COMMAND...: in the root; says nothing while all goes well.
+# quietly COMMAND...: runs it in the root; prints its output only if it fails.
 quietly() {
   local log
   log=$(mktemp)
@@ -59,8 +59,7 @@ quietly() {
   rm -f "$log"
 }
 
-# with_progress COMMAND...: like quietly, for a build by Ninja. Says how far it is: on a terminal in one line, elsewhere in a line every
-# 30 s.
+# with_progress COMMAND...: like quietly, for a build by Ninja; prints its progress, on a terminal in one line, elsewhere every 30 s.
 with_progress() {
   local log code=0 step all shown=$SECONDS
   log=$(mktemp)
@@ -79,7 +78,8 @@ with_progress() {
   rm -f "$log"
 }
 
-# python_venv NAME PACKAGE...: Debian's Python with packages of PyPI in build/NAME. False where they cannot be had.
+# python_venv NAME PACKAGE...: makes an environment of Debian's Python with packages of PyPI in build/NAME; fails if they cannot be
+# installed.
 python_venv() {
   local venv="$root/build/$1"
   shift
@@ -91,8 +91,8 @@ python_venv() {
   echo "$wanted" >"$venv/wanted"
 }
 
-# Later builds have the Python module; makes the environment that measurements run in. False where PyPI's packages cannot be had.
-# Mitsuba's LLVM variants, which it is tested with, load libllvm 19.
+# Adds the Python module to later builds, and makes the environment of tests and measurements; fails if PyPI's packages cannot be
+# installed. Mitsuba's LLVM variants load libllvm 19.
 with_python_module() {
   python_venv python-venv nanobind==3.1.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 xarray pytest nbclient ipykernel mitsuba==3.9.1 pvlib==0.16.1 reuse==6.2.0 ||
     return 1
@@ -100,7 +100,7 @@ with_python_module() {
   configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
 }
 
-# Without these words ccache leaves out what includes a precompiled header.
+# Without these values ccache does not cache sources that include a precompiled header.
 export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros"
 
 configure() {
@@ -109,13 +109,13 @@ configure() {
   quietly cmake --preset "$1" "${options[@]}"
 }
 
-# build_preset PRESET WORD...: the words are those of cmake --build.
+# build_preset PRESET OPTION...: the options are those of cmake --build.
 build_preset() {
   configure "$1"
   with_progress cmake --build --preset "$@"
 }
 
-# build TARGET...: as programs are used.
+# build TARGET...: builds targets of the preset release.
 build() {
   echo "Building $*"
   build_preset release --target "$@"
