@@ -191,7 +191,7 @@ class SheetSearch {
       visit(query, node.second_child, act);
       return;
     }
-    count(node.end - node.first);
+    count_comparisons(node.end - node.first);
     for (uint32_t i = node.first; i < node.end; ++i) {
       Group& group = groups_.all[order_[i]];
       const SheetTriangle& t = query.triangle;

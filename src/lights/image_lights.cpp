@@ -85,7 +85,7 @@ class ProjectionLight final : public ImagePointLight {
         poll();
         const double x = ((2 * i + 1.0) / width - 1) * double(half_width_);
         const double y = ((2 * j + 1.0) / height - 1) * double(half_height_);
-        const double spread = double(directions().spread(to_float(normalize(Vec3d{x, y, 1}))));
+        const double spread = double(directions().solid_angle_factor(to_float(normalize(Vec3d{x, y, 1}))));
         sum += double(image_.luminances()[size_t(j) * size_t(width) + size_t(i)]) * spread *
                std::pow(1 + x * x + y * y, -1.5);
       }
@@ -118,7 +118,7 @@ class GoniometricLight final : public ImagePointLight {
       const Vec2 centre{(float(cell % size_) + 0.5f) / float(size_), (float(cell / size_) + 0.5f) / float(size_)};
       const Vec3 w = sphere_from_square(centre);
       texels_.push_back((image.pixels[i] + image.pixels[i + 1] + image.pixels[i + 2]) / 3);
-      sum += double(texels_.back() * directions().spread({w.x, w.z, w.y}));
+      sum += double(texels_.back() * directions().solid_angle_factor({w.x, w.z, w.y}));
     }
     steradians_ = 4 * kPiD * sum / double(texels_.size());
     scale_ = light_scale(p, "power", steradians_);

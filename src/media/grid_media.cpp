@@ -216,8 +216,8 @@ class RgbGrid final : public Medium {
         white_(unit_d65()) {
     if (!sigma_a_ && !sigma_s_) fail(p.where(), "medium \"rgbgrid\" needs \"rgb sigma_a\" or \"rgb sigma_s\"");
     if (emission_ && !sigma_a_) fail(p.where("Le"), "\"Le\" needs \"rgb sigma_a\": the medium emits sigma_a Le");
-    if (sigma_a_) sigma_a_->bound(of_absorption_);
-    if (sigma_s_) sigma_s_->bound(of_scattering_);
+    if (sigma_a_) sigma_a_->fill_majorants(of_absorption_);
+    if (sigma_s_) sigma_s_->fill_majorants(of_scattering_);
     std::array<int, 3> c;
     constexpr float kCell = 1 / float(kMajorantCells);
     for (c[2] = 0; c[2] < kMajorantCells; ++c[2])

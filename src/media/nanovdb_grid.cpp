@@ -172,7 +172,7 @@ class NodeCheck {
     const auto& data = *node.data();
     for (uint32_t i = 0; i < Node::SIZE; ++i) {
       if (!data.mChildMask.isOn(i))
-        finite(data.mTable[i].value);
+        check_finite(data.mTable[i].value);
       else if (!children.take(moved(&data, data.mTable[i].child)))
         reject_damaged();
     }

@@ -23,7 +23,7 @@ uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
   std::array<GeometryHit, RayPacket::kWidth> at;
   const uint32_t hits = geometry_->intersect(packet, {is_detailed_.data()}, at.data(), points);
   for (size_t i = 0; i < RayPacket::kWidth; ++i)
-    if (hits >> i & 1) describe(at[i], points[i]);
+    if (hits >> i & 1) compute_point(at[i], points[i]);
   return hits;
 }
 

@@ -119,7 +119,7 @@ class SignalsOfChild {
     sigemptyset(&requests_);
     for (size_t i = 0; i < kRequests.size(); ++i) {
       sigaddset(&requests_, kRequests[i]);
-      set(kRequests[i], pass_on, before_[i + 1]);
+      set(kRequests[i], forward_signal, before_[i + 1]);
     }
     pthread_sigmask(SIG_BLOCK, &requests_, nullptr);
   }

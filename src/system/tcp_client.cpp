@@ -135,7 +135,7 @@ void TcpClient::send(std::span<const unsigned char> bytes) {
       fail({}, "{} has closed the connection: {}", name_, std::strerror(errno));
     else if (!wait_for(socket_, timeout_))
       fail({}, "{} takes no more data", name_);
-    if (Timeout::Clock::now() >= timeout_.end() && !bytes.empty()) fail({}, "{} takes data too slowly", name_);
+    if (Timeout::Clock::now() >= timeout_.deadline() && !bytes.empty()) fail({}, "{} takes data too slowly", name_);
   }
 }
 

@@ -104,7 +104,7 @@ void DepthSolver::add(const Tissue& tissue, double above, double weight, std::ve
   double upper_depth = tissue.optical_depth[kUpper], lower_depth = tissue.optical_depth[kLower];
   if (tissue.air_space_moves) upper_depth *= above, lower_depth *= 1 - above;
   const Index upper = mu_above_.size(), lower = mu_below_.size();
-  VectorXd kept_share(upper + lower);
+  VectorXd kept(upper + lower);
   for (Index i = 0; i < upper; ++i) kept[i] = survival(upper_depth, mu_above_[i], tissue.sieve_and_detour);
   for (Index i = 0; i < lower; ++i) kept[upper + i] = survival(lower_depth, mu_below_[i], tissue.sieve_and_detour);
   // A ray that enters a part crosses it, meets the air space, and crosses a part toward an epidermis.

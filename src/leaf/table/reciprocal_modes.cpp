@@ -50,7 +50,7 @@ VectorXd outgoing(const LeafModes& modes, double index, size_t cells) {
   const VectorXd weight = as_vector(exit_weights(index, cells, Measure::over_inner_cosine));
   VectorXd share(2 * weight.size());
   share << (grid(modes, kAbove, 0) + grid(modes, kThrough, 0)) * weight,
-      (grid(modes, kBelow, 0) + grid(modes, kThrough.back(), 0)) * weight;
+      (grid(modes, kBelow, 0) + grid(modes, kThrough.reversed(), 0)) * weight;
   return share;
 }
 
@@ -96,7 +96,7 @@ std::optional<LeafModes> make_reciprocal(const LeafModes& modes, double index, s
     return of(route.from_below).asDiagonal() * symmetrised_mode(modes, inner, route, mode) *
            of(route.reversed().from_below).asDiagonal();
   };
-  for (const Route& route : {kAbove, kBelow, kThrough, kThrough.back()})
+  for (const Route& route : {kAbove, kBelow, kThrough, kThrough.reversed()})
     for (size_t m = 0; m < modes.series(route.from_below, route.crosses).size(); ++m)
       result.series(route.from_below, route.crosses).push_back(to_row_major(scaled(route, m)));
   return result;

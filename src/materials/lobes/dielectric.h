@@ -19,7 +19,7 @@ class LaneIndices {
       if (lane == lambda.hero) hero_ = count_;
       lanes_[size_t(count_++)] = lane;
     }
-    for (int i = 1; i < count_; ++i) disperses_ = disperses_ || of(i) != of(0);
+    for (int i = 1; i < count_; ++i) disperses_ = disperses_ || index(i) != index(0);
   }
 
   /// Whether lanes differ.
@@ -49,7 +49,7 @@ class LaneIndices {
   /// Whether all indices are so close to 1 that no light is refracted.
   bool are_all_one() const {
     for (int i = 0; i < count_; ++i)
-      if (std::abs(of(i) - 1) >= kAlmostOne) return false;
+      if (std::abs(index(i) - 1) >= kAlmostOne) return false;
     return true;
   }
   /// Moves indices away from 1: closer to it, reflection and refraction by rough facets cannot be computed in float.
@@ -166,7 +166,7 @@ class SmoothDielectricBsdf final : public Bsdf {
  private:
   /// All lanes have one index and one direction.
   std::optional<BsdfSample> refract_all(const Vec3& wo, float chance) const {
-    const DielectricInterface lane_interface({0, 0}, indices_.index(0));
+    const DielectricInterface border({0, 0}, indices_.index(0));
     const auto way = border.refract(wo, {0, 0, 1});
     if (!way) return {};
     return BsdfSample{.f = indices_.mask() * (way->weight / std::abs(way->wi.z)),
@@ -180,7 +180,7 @@ class SmoothDielectricBsdf final : public Bsdf {
   std::optional<BsdfSample> refract_one(const Vec3& wo, const SampledSpectrum& reflected, float chance,
                                         RandomStream& rng) const {
     const auto [chosen, among] = indices_.choose_lane(SampledSpectrum(indices_.mask().v - reflected.v), rng);
-    const DielectricInterface lane_interface({0, 0}, indices_.index(chosen));
+    const DielectricInterface border({0, 0}, indices_.index(chosen));
     const auto way = border.refract(wo, {0, 0, 1});
     if (!way) return {};
     BsdfSample s{.f = {},

@@ -41,7 +41,7 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return leaf_scatters(wo, wi) ? leaf_f(wo, wi, spread(wo, wi)) : SampledSpectrum();
+    return leaf_scatters(wo, wi) ? leaf_f(wo, wi, lobe_density(wo, wi)) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
@@ -61,7 +61,7 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
-    return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, spread(wo, wi)) : 0;
+    return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, lobe_density(wo, wi)) : 0;
   }
 
   /// Scatters light along the model's own incident direction, whichever direction paths use.

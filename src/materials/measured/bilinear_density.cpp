@@ -65,7 +65,7 @@ BilinearDensity::BilinearDensity(std::vector<float> values, size_t width, size_t
   const size_t size = width * height, slices = values_.size() / size;
   left_.resize(values_.size());
   bottom_.resize(slices * height);
-  std::vector<double> row(width), cumulative(height);
+  std::vector<double> row(width), below(height);
   for (size_t s = 0; s < slices; ++s) {
     float* const v = values_.data() + s * size;
     double before = 0;

@@ -84,7 +84,7 @@ void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
     if (!args->valid[i]) continue;
     attempt(query, [&] {
       const Ray ray = to_ray(rtcGetRayFromRayN(args->ray, args->N, i));
-      if (meet(surface, {args->geomID, args->primID}, ray, query, query.lane[i]))
+      if (intersect_shape(surface, {args->geomID, args->primID}, ray, query, query.lane[i]))
         RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
     });
   }

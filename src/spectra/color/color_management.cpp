@@ -49,7 +49,7 @@ OCIO::ConstConfigRcPtr read_config(const std::filesystem::path& path) try {
 /// Conversions that are applied one after the other.
 using Chain = std::vector<OCIO::ConstProcessorRcPtr>;
 
-void apply(const Chain& chain, std::span<float> rgb) {
+void apply_chain(const Chain& chain, std::span<float> rgb) {
   assert(rgb.size() % 3 == 0);
   if (rgb.empty()) return;
   for (const auto& processor : chain) {
@@ -192,12 +192,12 @@ ColorManager::ColorManager(ColorManager&&) noexcept = default;
 ColorManager& ColorManager::operator=(ColorManager&&) noexcept = default;
 
 void ColorManager::convert(std::span<float> rgb, std::string_view from, std::string_view to) const {
-  apply(build([&] { return impl_->conversion(from, to); }), rgb);
+  apply_chain(build([&] { return impl_->conversion(from, to); }), rgb);
 }
 
 void ColorManager::display(std::span<float> rgb, std::string_view from, std::string_view display,
                            std::string_view view) const {
-  apply(build([&] { return impl_->display(from, display, view); }), rgb);
+  apply_chain(build([&] { return impl_->display(from, display, view); }), rgb);
 }
 
 void ColorManager::check_display(std::string_view from, std::string_view display, std::string_view view) const {
