@@ -1,24 +1,21 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "jobs/record/common_params.h"
-#include "scene/geometry/homogeneous_canopy.h"
+#include "jobs/support/canopy_files.h"
 #include "scene/geometry/instance_writer.h"
 
 namespace frond {
 
-// `frond canopy`: table of randomly placed leaves, a homogeneous canopy in the sense of radiative transfer models.
+// `frond canopy`: table of randomly placed leaves in a layer, by a profile of leaf area density, in crowns or in rows.
 
 namespace {
 
 using enum ArgumentKind;
 
-const std::vector<std::string_view> kAngles = [] {
-  std::vector<std::string_view> names;
-  for (const LeafAngles& a : leaf_angle_distributions()) names.push_back(a.name);
-  return names;
-}();
-
-/// Lengths in maps that are inverted in 32 bits.
+/// Of maps that are inverted in 32 bits.
 constexpr Interval kLengths{1e-9, 1e9};
 
 const JobParam kParams[] = {
@@ -28,7 +25,11 @@ const JobParam kParams[] = {
     JobParam("count", count, "Number of leaves.", {.range = {1, 4e9}, .excludes = "lai"}),
     JobParam("ball", real, "Fill a ball of this radius around the origin instead of a plot.",
              {.range = kLengths, .needs = "count"}),
-    JobParam("angles", text, "Distribution of leaf angles.", {.default_value = "spherical", .choices = kAngles}),
+    JobParam("angles", text,
+             "Distribution of leaf angles: spherical, planophile, erectophile, plagiophile, extremophile, uniform, "
+             "horizontal; ellipsoidal,mean=57.3 (degrees) or ellipsoidal,chi=1; beta,mu=2.77,nu=1.17; or a CSV file of "
+             "angle (degrees) and frequency.",
+             {.type = "ANGLES", .default_value = "spherical"}),
     JobParam("scale", real, "Scale of each leaf: its radius if the object is a disk of radius 1.",
              {.default_value = "0.05", .range = kLengths}),
     JobParam("leaf-area", real, "One-sided area of the object at scale 1; the default is a disk of radius 1.",
@@ -37,6 +38,18 @@ const JobParam kParams[] = {
              {.type = "X,Y", .default_value = "10,10", .range = kLengths, .values = 2}),
     JobParam("heights", numbers, "Minimum and maximum height of the leaves' centres.",
              {.type = "LEAST,MOST", .default_value = "0,1", .range = {-kLengths.max, kLengths.max}, .values = 2}),
+    JobParam("profile", text,
+             "CSV file of height and leaf area density (m2/m3), linear between its rows. Its integral is the leaf area "
+             "index unless --lai or --count is given.",
+             {.type = "FILE", .path = PathUse::read, .excludes = "heights,ball,crowns"}),
+    JobParam("rows", numbers,
+             "Rows of this spacing and width along y, the first half a spacing from x = 0. The leaf area index is that "
+             "of the plot.",
+             {.type = "SPACING,WIDTH", .range = kLengths, .values = 2, .excludes = "ball,crowns"}),
+    JobParam("crowns", text,
+             "CSV file of crowns that hold the leaves, one in each line: x, y, z of its middle, or base in place of z; "
+             "radius, or rx, ry, rz; optional: shape (ellipsoid, cone, cylinder), density relative to other crowns.",
+             {.type = "FILE", .path = PathUse::read, .excludes = "heights,ball"}),
     JobParam("apart", real, "Minimum distance between the leaves' centres; by default positions are independent.",
              {.range = kLengths}),
     JobParam("column", texts,
@@ -46,7 +59,7 @@ const JobParam kParams[] = {
 };
 
 /// Parses NAME=LEAST:MOST. Throws InputError.
-HomogeneousCanopy::Column column_of(const std::string& text, const Arguments& args) {
+RandomCanopy::Column column_of(const std::string& text, const Arguments& args) {
   const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
   std::optional<std::vector<double>> ends;
   if (equals != std::string::npos && colon != std::string::npos)
@@ -56,27 +69,60 @@ HomogeneousCanopy::Column column_of(const std::string& text, const Arguments& ar
   return {text.substr(0, equals), {(*ends)[0], (*ends)[1]}};
 }
 
-/// Returns the canopy of the arguments. Throws InputError if --heights is reversed.
-HomogeneousCanopy canopy_of(const Arguments& args) {
+/// Returns --rows. Throws InputError for rows that overlap or do not fit into the plot; warns if a repeated plot would
+/// have another distance between its last row and the next.
+std::optional<PlantRows> rows_of(const JobRun& run, double size) {
+  const auto v = run.args.numbers("rows");
+  if (v.empty()) return {};
+  const std::string option = run.args.spelled("rows");
+  if (v[1] > v[0]) fail({}, "{}: the width {:g} is larger than the spacing {:g}", option, v[1], v[0]);
+  if (v[0] > size) fail({}, "{}: the plot is {:g} wide, no row of spacing {:g} fits", option, size, v[0]);
+  constexpr double kRounding = 1e-6;  // of the number of rows, which decimal fractions as 10 / 0.1 leave
+  if (const double count = size / v[0]; std::abs(count - std::round(count)) > kRounding)
+    run.log().warn({},
+                   fmt::format("{}: the plot's width {:g} is no multiple of the spacing {:g}: repeated, its rows are "
+                               "not evenly spaced",
+                               option, size, v[0]));
+  return PlantRows{v[0], v[1]};
+}
+
+/// Returns the canopy of the arguments, whose distribution is `angles`. Throws InputError if --heights is reversed.
+RandomCanopy canopy_of(const JobRun& run, const LeafAngles& angles) {
+  const Arguments& args = run.args;
   const auto size = args.numbers("size"), heights = args.numbers("heights");
   if (!(heights[0] <= heights[1])) fail({}, "{}: {} is above {}", args.spelled("heights"), heights[0], heights[1]);
-  HomogeneousCanopy canopy{.leaf_area_index = args.real("lai"),
-                           .count = uint64_t(args.count("count")),
-                           .leaf_area = args.real("leaf-area"),
-                           .scale = args.real("scale"),
-                           .size = {size[0], size[1]},
-                           .heights = {heights[0], heights[1]},
-                           .ball = args.real("ball"),
-                           .apart = args.real("apart"),
-                           .seed = args.seed("seed")};
-  canopy.angles = &*std::ranges::find(leaf_angle_distributions(), args.text("angles"), &LeafAngles::name);
+  RandomCanopy canopy{.leaf_area_index = args.real("lai"),
+                      .count = uint64_t(args.count("count")),
+                      .angles = &angles,
+                      .leaf_area = args.real("leaf-area"),
+                      .scale = args.real("scale"),
+                      .size = {size[0], size[1]},
+                      .heights = {heights[0], heights[1]},
+                      .ball = args.real("ball"),
+                      .rows = rows_of(run, size[0]),
+                      .apart = args.real("apart"),
+                      .seed = args.seed("seed")};
+  // A profile states its own leaf area; --lai scales it.
+  if (args.given("profile")) {
+    canopy.profile = read_profile(args.text("profile"));
+    if (!args.given("lai")) canopy.leaf_area_index = canopy.profile->integral();
+  }
+  if (args.given("crowns")) canopy.crowns = read_crowns(args.text("crowns"));
   for (const std::string& text : args.texts("column")) canopy.columns.push_back(column_of(text, args));
   return canopy;
 }
 
+/// Returns the distribution as text with its mean: "spherical, mean 57.30 degrees".
+std::string text_of(const LeafAngles& angles) {
+  const double mean = angles.mean() * 180 / std::numbers::pi;
+  return fmt::format("{}{}, mean {:.2f} degrees", angles.name,
+                     angles.chi ? fmt::format(", chi {:.5g}", *angles.chi) : "", mean);
+}
+
 /// The job: draws leaves one by one, so that memory does not grow with their number.
 Result canopy(const JobRun& run) {
-  const HomogeneousCanopy canopy = canopy_of(run.args);
+  const LeafAngles angles = leaf_angles_of(run.args.text("angles"), run.args.spelled("angles"));
+  const RandomCanopy canopy = canopy_of(run, angles);
   const uint64_t leaves = canopy.leaves();
   constexpr uint64_t kMost = 0xfffffffe;  // largest number of instances of one geometry in Embree
   if (leaves == 0)
@@ -86,7 +132,7 @@ Result canopy(const JobRun& run) {
          canopy.size[0] * canopy.size[1]);
   if (leaves > kMost) fail({}, "the number of leaves is {}: {} is the limit", leaves, kMost);
   std::vector<std::string> names;
-  for (const HomogeneousCanopy::Column& column : canopy.columns) names.push_back(column.name);
+  for (const RandomCanopy::Column& column : canopy.columns) names.push_back(column.name);
   const std::string output = binary_file_of(run.args, "output");
   InstanceWriter writer(output, leaves, names);
   LeafPlacer placer(canopy);
@@ -104,6 +150,9 @@ Result canopy(const JobRun& run) {
     result.facts.push_back({"leaf_area_index", index});
     message += fmt::format(", leaf area index {:.5g}", index);
   }
+  message += fmt::format("; leaf angles {}", text_of(angles));
+  result.facts.push_back({"mean_leaf_angle_deg", angles.mean() * 180 / std::numbers::pi});
+  if (angles.chi) result.facts.push_back({"chi", *angles.chi});
   run.log().info(message);
   return result;
 }

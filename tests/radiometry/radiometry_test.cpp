@@ -10,8 +10,8 @@
 #include "radiometry/flux.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "scene/format/parser.h"
-#include "scene/geometry/homogeneous_canopy.h"
 #include "scene/geometry/instance_writer.h"
+#include "scene/geometry/random_canopy.h"
 #include "system/file_bytes.h"
 #include "tests/support/input_error.h"
 
@@ -65,8 +65,7 @@ class Radiometry : public ::testing::Test {
   }
   /// Leaves of a canopy of this area index in a plot of 2 x 2 x 1.
   std::string canopy(double lai, const std::string& leaf) const {
-    HomogeneousCanopy c{
-        .leaf_area_index = lai, .angles = &leaf_angle_distributions()[0], .scale = 0.04, .size = {2, 2}};
+    RandomCanopy c{.leaf_area_index = lai, .angles = &leaf_angle_distributions()[0], .scale = 0.04, .size = {2, 2}};
     c.heights = {0.05, 1};
     LeafPlacer placer(c);
     InstanceWriter writer(folder_.name_of("leaves.npy"), c.leaves(), {});

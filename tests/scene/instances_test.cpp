@@ -11,7 +11,6 @@
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "scene/format/parser.h"
-#include "scene/geometry/homogeneous_canopy.h"
 #include "scene/geometry/instance_table.h"
 #include "scene/geometry/instance_writer.h"
 #include "scene/geometry/npy.h"
@@ -398,52 +397,6 @@ TEST_F(Instances, AColumnThatNoTableHasIsAnError) {
       error_of([&] { scene(texture + leaves); }),
       HasSubstr("scene.pbrt:3:48: no table of instances has a column \"clorophyll\"; did you mean \"chlorophyll\"?"));
   EXPECT_THAT(error_of([&] { scene(texture); }), HasSubstr("none has any numbers"));
-}
-
-/// The leaf area index and the mean projection of leaf normals, in closed form: G(vertical) = E|cos theta|.
-TEST(HomogeneousCanopy, LeavesLeanAsTheDistributionSays) {
-  for (const LeafAngles& angles : leaf_angle_distributions()) {
-    HomogeneousCanopy canopy{.leaf_area_index = 2, .angles = &angles};
-    canopy.seed = 3;
-    EXPECT_EQ(canopy.leaves(), uint64_t(std::llround(200 / (std::numbers::pi * 0.0025))));
-    LeafPlacer placer(canopy);
-    constexpr int kLeaves = 20000;
-    double sum = 0, squares = 0;
-    for (int i = 0; i < kLeaves; ++i) {
-      const AffineMap map = placer.place({});
-      const Vec3 normal = normalize(map.vector({0, 0, 1}));
-      EXPECT_NEAR(length(map.vector({1, 0, 0})), 0.05f, 1e-6f);
-      const double c = std::abs(double(normal.z));
-      sum += c, squares += c * c;
-    }
-    double weight = 0, expected = 0;
-    constexpr int kSteps = 2000;
-    for (int i = 0; i < kSteps && angles.density; ++i) {
-      const double theta = (i + 0.5) * std::numbers::pi / 2 / kSteps;
-      weight += angles.density(theta), expected += angles.density(theta) * std::cos(theta);
-    }
-    expected = angles.density ? expected / weight : 1;
-    const double mean = sum / kLeaves, error = std::sqrt((squares / kLeaves - mean * mean) / kLeaves);
-    EXPECT_LE(std::abs(mean - expected), 4.5 * error + 1e-6) << angles.name;  // false alarms: 7e-6 for each
-  }
-}
-
-TEST(HomogeneousCanopy, LeavesKeepApartWhereTheyAreToldTo) {
-  HomogeneousCanopy canopy{.angles = &leaf_angle_distributions()[0]};
-  canopy.count = 2000, canopy.ball = 1, canopy.apart = 0.1;
-  LeafPlacer placer(canopy);
-  std::vector<Vec3> middles;
-  for (uint64_t i = 0; i < canopy.leaves(); ++i) middles.push_back(placer.place({}).translation());
-  for (size_t i = 0; i < middles.size(); ++i) {
-    EXPECT_LE(length(middles[i]), 1.00001f);
-    for (size_t j = 0; j < i; ++j) ASSERT_GT(length(middles[i] - middles[j]), 0.09999f);
-  }
-  canopy.apart = 0.5;
-  LeafPlacer crowded(canopy);
-  EXPECT_THAT(error_of([&] {
-                for (uint64_t i = 0; i < canopy.leaves(); ++i) crowded.place({});
-              }),
-              HasSubstr("there is no room for leaf"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "scene/geometry/homogeneous_canopy.h"
+#include "scene/geometry/random_canopy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,37 +11,35 @@ namespace frond {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
-
-constexpr LeafAngles kDistributions[] = {
-    {"spherical", [](double theta) { return std::sin(theta); }},
-    {"planophile", [](double theta) { return 1 + std::cos(2 * theta); }},
-    {"erectophile", [](double theta) { return 1 - std::cos(2 * theta); }},
-    {"plagiophile", [](double theta) { return 1 - std::cos(4 * theta); }},
-    {"extremophile", [](double theta) { return 1 + std::cos(4 * theta); }},
-    {"uniform", [](double) { return 1.0; }},
-    {"horizontal", nullptr},
-};
+/// Share of a row by which a plot may be too narrow for its last row, for rounding errors.
+constexpr double kWholeRows = 1e-9;
 
 }  // namespace
 
-std::span<const LeafAngles> leaf_angle_distributions() { return kDistributions; }
+double Crown::volume() const {
+  constexpr double kFilled[] = {4 * kPiD / 3, 2 * kPiD / 3, 2 * kPiD};  // of an ellipsoid, a cone and a cylinder
+  return kFilled[size_t(shape)] * radii.x * radii.y * radii.z;
+}
 
-uint64_t HomogeneousCanopy::leaves() const {
+uint64_t RandomCanopy::leaves() const {
   if (count > 0) return count;
   return uint64_t(std::llround(leaf_area_index * size[0] * size[1] / (leaf_area * scale * scale)));
 }
 
 /// A distribution without density is horizontal: all angles are 0.
-LeafPlacer::LeafPlacer(const HomogeneousCanopy& canopy) : canopy_(canopy) {
-  constexpr int kSteps = 1 << 14;
+LeafPlacer::LeafPlacer(const RandomCanopy& canopy) : canopy_(canopy), leaves_(canopy.leaves()) {
+  constexpr int kSteps = LeafAngles::kSteps;
+  double filled = 0;
+  for (const Crown& crown : canopy.crowns) crown_ends_.push_back(filled += crown.volume() * crown.density);
+  for (double& end : crown_ends_) end /= filled;
   if (!canopy.angles->density) {
     angle_at_ = {0, 0};
     return;
   }
-  // Cumulative distribution by the midpoint rule, then its inverse at equal steps.
+  // Cumulative distribution, then its inverse at equal steps.
   std::vector<double> cumulative{0};
   const double step = kPiD / 2 / kSteps;
-  for (int i = 0; i < kSteps; ++i) cumulative.push_back(cumulative.back() + canopy.angles->density((i + 0.5) * step));
+  for (int i = 0; i < kSteps; ++i) cumulative.push_back(cumulative.back() + canopy.angles->share(i));
   size_t below = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const double wanted = cumulative.back() * i / kSteps;
@@ -52,11 +50,39 @@ LeafPlacer::LeafPlacer(const HomogeneousCanopy& canopy) : canopy_(canopy) {
   }
 }
 
-/// Returns a position uniform in the layer or in the ball.
+/// Returns a position that is uniform in the crown of the leaf. Crowns have their exact shares of the leaves, up to
+/// rounding: leaf i belongs to the crown that holds the share (i + 1/2) / leaves.
+Vec3d LeafPlacer::position_in_crown(RandomStream& random) const {
+  const double share = (double(next_ - 1) + 0.5) / double(leaves_);
+  const auto i =
+      std::min(size_t(std::ranges::upper_bound(crown_ends_, share) - crown_ends_.begin()), crown_ends_.size() - 1);
+  const Crown& crown = canopy_.crowns[i];
+  const double u = random.uniform_double(), phi = 2 * kPiD * random.uniform_double(), v = random.uniform_double();
+  double z = 2 * u - 1, ring = std::sqrt(v);  // in units of the half axes; first of a cylinder
+  if (crown.shape == Crown::Shape::cone) {
+    const double below_apex = std::cbrt(u);  // in units of the height, to which the radius is proportional
+    z = 1 - 2 * below_apex, ring *= below_apex;
+  } else if (crown.shape == Crown::Shape::ellipsoid) {
+    const double r = std::cbrt(v);
+    ring = std::sqrt(1 - z * z) * r, z *= r;
+  }
+  return crown.centre +
+         Vec3d{crown.radii.x * ring * std::cos(phi), crown.radii.y * ring * std::sin(phi), crown.radii.z * z};
+}
+
+/// Returns a position in the layer, the rows, the crowns or the ball.
 Vec3d LeafPlacer::position(RandomStream& random) const {
   const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
+  if (!canopy_.crowns.empty()) return position_in_crown(random);
   if (canopy_.ball == 0) {
-    const double x = between(0, canopy_.size[0]), y = between(0, canopy_.size[1]);
+    double x = between(0, canopy_.size[0]);
+    const double y = between(0, canopy_.size[1]);
+    if (const auto& rows = canopy_.rows) {
+      const double count = std::floor(canopy_.size[0] / rows->spacing + kWholeRows);
+      const double at = x / canopy_.size[0] * count, row = std::floor(at);
+      x = (row + 0.5) * rows->spacing + (at - row - 0.5) * rows->width;
+    }
+    if (canopy_.profile) return {x, y, canopy_.profile->quantile(random.uniform_double())};
     return {x, y, between(canopy_.heights[0], canopy_.heights[1])};
   }
   const double z = between(-1, 1), phi = between(0, 2 * kPiD), r = canopy_.ball * std::cbrt(random.uniform_double());
