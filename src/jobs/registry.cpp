@@ -25,6 +25,7 @@ extern const JobInfo kManJob;
 extern const JobInfo kMergeJob;
 extern const JobInfo kRenderJob;
 extern const JobInfo kSpectrophotometerJob;
+extern const JobInfo kStructureJob;
 extern const JobInfo kSubmitJob;
 extern const JobInfo kTableJob;
 
@@ -36,6 +37,7 @@ std::span<const JobInfo* const> all_jobs() {
       &kTableJob,  // Leaf models
       &kBrfJob,
       &kFluxJob,
+      &kStructureJob,
       &kSpectrophotometerJob,
       &kGoniophotometerJob,  // Measure
       &kListJob,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -121,6 +122,10 @@ class Geometry {
   /// exposure.
   Bounds bounds_of(size_t surface) const;
   Bounds bounds_without(size_t surface) const;
+  /// Calls `visit` for each surface: once, or once for each instance of its object, with its map to the world at the
+  /// begin of the exposure and the number of the instance (0: none), always in the same order.
+  using SurfaceVisitor = std::function<void(const Surface& surface, const AffineMap& to_world, uint64_t instance)>;
+  void visit_surfaces(const SurfaceVisitor& visit) const;
   /// Returns one-sided areas by instance number minus 1, in scene units squared.
   std::vector<float> areas() const;
 
