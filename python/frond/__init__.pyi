@@ -187,6 +187,28 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv."""
 
+def structure(scene: str | os.PathLike | Scene, zenith: float | Sequence[float] | str = '0:80:10', azimuth: float | Sequence[float] | str | None = None, *, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, sun: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, rays: int = 100000, rms: float | None = None, time_limit: float | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+    """Measure the structure of a canopy: leaf area, gap fraction, clumping, sunlit leaves.
+
+    Rays through the target measure the gap fraction: the share of them that meet no leaf; other surfaces do not stop them. Points of the leaves measure the leaf area index, the leaf angles, their mean projection G, and the share of the leaf area that the sun reaches. The clumping index is -ln(gap fraction) cos(zenith) / (G LAI).
+
+    scene: Scene file (pbrt-v4 format).
+    zenith: Zenith angles of the gap fraction, G, the clumping index, and the leaf area sunlit from there. Unit: degrees. Range: from 0 to 89.9. Default: 0:80:10.
+    azimuth: Azimuths of these, from +x toward +y; by default the mean over all azimuths is measured. Unit: degrees.
+    material: Material whose surfaces count as leaves, by its name in the scene; by default all leaf models. Repeatable.
+    sun: Zenith angle and azimuth, from +x toward +y, of the sun; by default those of the scene's only sun. Unit: degrees.
+    target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
+    period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
+    rays: Number of rays for each direction, and of points of leaves. Default: 1e5.
+    rms: Absolute standard error: stop when the RMS over the gap and sunlit fractions is below this; rays is then not used. Range: above 0, up to 1.
+    time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
+    seed: Seed of all random numbers.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
+    strict: Treat warnings as errors.
+    csv: CSV file to write; - is standard output.
+    json: JSON file to write; - is standard output.
+    plot: Chart against the zenith angle: .svg or .png."""
+
 def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
     """Measure a material's reflectance, transmittance and absorptance.
 
@@ -322,18 +344,21 @@ def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, l
     single_sided: Material, by name with * and ?, whose leaves are two sheets, front and back: remove the second sheet. Repeatable.
     strict: Treat warnings as errors."""
 
-def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None, *, ball: float | None = None, angles: str | os.PathLike = 'spherical', scale: float = 0.05, leaf_area: float = 3.141592653589793, size: float | Sequence[float] | str = '10,10', heights: float | Sequence[float] | str = '0,1', apart: float | None = None, column: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, progress = None, session: Session | None | None = None) -> Result:
+def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None, *, ball: float | None = None, angles: str | os.PathLike = 'spherical', scale: float = 0.05, leaf_area: float = 3.141592653589793, size: float | Sequence[float] | str = '10,10', heights: float | Sequence[float] | str = '0,1', profile: str | os.PathLike | None = None, rows: float | Sequence[float] | str | None = None, crowns: str | os.PathLike | None = None, apart: float | None = None, column: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write an instance table of randomly placed leaves, for Shape "instances".
 
     output: Instance table to write, a NumPy file (.npy).
     lai: Leaf area index: one-sided leaf area over ground area. Range: above 0. Default: 3.
     count: Number of leaves. Range: from 1 to 4000000000. Excludes lai.
     ball: Fill a ball of this radius around the origin instead of a plot. Range: from 1e-09 to 1000000000. Needs count.
-    angles: Distribution of leaf angles. One of spherical, planophile, erectophile, plagiophile, extremophile, uniform, horizontal. Default: spherical.
+    angles: Distribution of leaf angles: spherical, planophile, erectophile, plagiophile, extremophile, uniform, horizontal; ellipsoidal,mean=57.3 (degrees) or ellipsoidal,chi=1; beta,mu=2.77,nu=1.17; or a CSV file of angle (degrees) and frequency. Default: spherical.
     scale: Scale of each leaf: its radius if the object is a disk of radius 1. Range: from 1e-09 to 1000000000. Default: 0.05.
     leaf_area: One-sided area of the object at scale 1; the default is a disk of radius 1. Range: above 0. Default: 3.141592653589793.
     size: Size of the plot along x and y, from 0; also the period of a repeated plot. Range: from 1e-09 to 1000000000. Default: 10,10.
     heights: Minimum and maximum height of the leaves' centres. Range: from -1000000000 to 1000000000. Default: 0,1.
+    profile: CSV file of height and leaf area density (m2/m3), linear between its rows. Its integral is the leaf area index unless lai or count is given. Excludes heights, ball, crowns.
+    rows: Rows of this spacing and width along y, the first half a spacing from x = 0. The leaf area index is that of the plot. Range: from 1e-09 to 1000000000. Excludes ball, crowns.
+    crowns: CSV file of crowns that hold the leaves, one in each line: x, y, z of its middle, or base in place of z; radius, or rx, ry, rz; optional: shape (ellipsoid, cone, cylinder), density relative to other crowns. Excludes heights, ball.
     apart: Minimum distance between the leaves' centres; by default positions are independent. Range: from 1e-09 to 1000000000.
     column: Random number of each leaf for Texture "instance", uniform between two bounds: chlorophylla=2:5. Repeatable.
     seed: Seed of all random numbers."""

@@ -408,6 +408,7 @@ LONG = {
               ' session=session)',
     "brf": 'frond.brf("scene.pbrt", paths=2**32, period=(2, 2), session=session)',
     "flux": 'frond.flux("scene.pbrt", paths=10**12, period=(2, 2), session=session)',
+    "structure": 'frond.structure("scene.pbrt", rays=10**12, period=(2, 2), session=session)',
     "compare": 'frond.compare("scene.pbrt", spp=10**6, reference_spp=10**6, session=session)',
     "canopy": 'frond.canopy(output="c.npy", count=10**8, size=(1e5, 1e5), session=session)',
     "bsdf": 'frond.bsdf("abm", [551], session=session).sample(numpy.tile(numpy.float32([0, 0, 1]), (40_000_000, 1)))',
