@@ -263,6 +263,7 @@ def test_parts_of_both_are_of_one_render(scene_text, tmp_path):
 @pytest.mark.parametrize("name, given", [
     ("brf", {"scene": "scene.pbrt", "zenith": [0, 30], "wavelengths": [551, 800], "paths": 2048, "seed": 3, "period": (2, 2)}),
     ("flux", {"scene": "scene.pbrt", "wavelengths": [551], "paths": 65536, "seed": 3, "period": (2, 2)}),
+    ("structure", {"scene": "scene.pbrt", "zenith": [0, 30], "rays": 4096, "seed": 3, "period": (2, 2)}),
     ("spectrophotometer", {"material": "leaf_solved,specimen=maize", "wavelengths": [551, 800], "angles": [8, 172], "rays": 20000}),
     ("goniophotometer", {"material": "abm", "wavelengths": 551, "rays": 20000, "patches": "4x6"}),
     ("fit", {"file": "leaf.csv", "structure": "bifacial", "sieve": "off"}),

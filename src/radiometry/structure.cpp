@@ -138,6 +138,8 @@ std::vector<uint8_t> counted_materials(const SceneDescription& description, cons
 void simplify(const Registry& registry, const StructureRequest& request, SceneDescription& description) {
   for (MaterialDescription& m : description.materials) m.plugin = {"diffuse", m.plugin.where, {}};
   if (request.sun_deg) description.lights.clear();
+  // Without a light the loader would warn of a black image. This one is no sun.
+  if (description.lights.empty()) description.lights.push_back({{"infinite", {}, {}}, {}});
   prepare_for_radiometry(registry, "bands,wavelengths=550", request.period, true, description);
 }
 

@@ -126,6 +126,9 @@ TEST_F(CanopyJobs, TheStructureStopsAtAnError) {
   EXPECT_LE(json["error"].get<double>(), 0.002);
   EXPECT_GT(json["error"].get<double>(), 0.0007);
   EXPECT_THAT(structure({"--sun", "95,0"}).err, HasSubstr("--sun: the zenith angle 95 is not between 0 and 89.9"));
+  const Outcome strict = structure({"--sun", "30,90", "--strict"});
+  EXPECT_EQ(strict.code, 0) << strict.err;
+  EXPECT_THAT(strict.err, HasSubstr("sun at zenith angle 30, azimuth 90 degrees"));
   EXPECT_THAT(structure({"--zenith", "90"}).err, HasSubstr("--zenith"));
   EXPECT_THAT(structure({"--csv", folder_.name_of("scene.pbrt")}).err, HasSubstr("would replace the input"));
 }
