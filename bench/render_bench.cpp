@@ -86,11 +86,12 @@ struct LoadedScene {
     return d;
   }
   RenderJob job(const World& world) const {
-    return {world,          scene.camera(),  scene.integrator(), scene.wavelengths(),
-            scene.filter(), scene.sampler(), scene.seed()};
+    return {world, scene.integrator(), scene.filter(), scene.camera_sampling()};
   }
   /// An empty film for a render.
-  Film film() const { return Film({.settings = film_settings, .exponent = film_exponent(job(scene), film_settings)}); }
+  Film film() const {
+    return Film({.settings = film_settings, .exponent = film_exponent(job(scene), film_settings.exposure)});
+  }
 
   const Log& log = silent_log();
   ThreadPool pool;

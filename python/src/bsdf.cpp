@@ -20,8 +20,8 @@ class FlatBsdf {
     run(
         [&](const RenderControl& control) {
           const StopScope stop(control.stop);
-          material_ = ready_material(material_text({material}), session.registry(), wavelengths, session.pool(),
-                                     session.log(), owner_->context.options().cache);
+          material_ = prepared_material(material_text({material}), session.registry(), wavelengths, session.pool(),
+                                        session.log(), owner_->context.options().cache);
         },
         nb::none());
     if (!material_->evaluate(flat_hit(), lambda_, arena_)) fail({}, "{}: there is no surface", material);

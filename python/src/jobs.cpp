@@ -100,7 +100,7 @@ void bind_jobs(nb::module_& m) {
           } catch (const nb::python_error&) {  // of a BSDF written in Python
             throw;
           } catch (...) {
-            rethrow_naming(owner->context.options().plugins);
+            rethrow_naming_plugins(owner->context.options().plugins);
           }
         };
         run(work, progress);

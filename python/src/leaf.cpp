@@ -3,8 +3,7 @@
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/tissue/absorption.h"
 #include "materials/leaf_file.h"
-#include "render/material_words.h"
-#include "render/refusing_log.h"
+#include "render/measured_material.h"
 #include "scene/resolver.h"
 #include "system/atomic_file.h"
 

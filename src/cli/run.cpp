@@ -43,7 +43,7 @@ Result run_guarded(const Log& log, std::span<const std::string> plugins, const A
     log.info("stopped; there is no partial result yet");
     return {.stopped = true};
   } catch (...) {
-    rethrow_naming(plugins);
+    rethrow_naming_plugins(plugins);
   }
 }
 

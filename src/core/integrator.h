@@ -2,6 +2,7 @@
 
 #include <array>
 #include <compare>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,8 @@
 #include "core/world.h"
 
 namespace frond {
+
+struct CameraSampling;
 
 /// First surface that a camera ray meets.
 struct FirstHit {
@@ -25,7 +28,7 @@ struct FirstHit {
   SampledSpectrum albedo;
 };
 
-/// Plug-in that returned an invalid result: a value or density that is negative or not finite, or a direction that is
+/// Plug-in that returned an impossible value: a value or density that is negative or not finite, or a direction that is
 /// not a unit vector. The radiance of the path is then not a number.
 struct PlugInFault {
   enum class Kind : uint8_t { none, material, light };
@@ -48,6 +51,23 @@ struct PathResult {
   int scatterings = 0;     ///< number of scatterings; of the first path where the first hit scatters two rays
   bool escaped = false;    ///< that path left the scene; otherwise it was absorbed or terminated
   PlugInFault fault = {};  ///< the last one on the path
+
+  /// Begins the result of a path. If the path hits nothing, the members of `first` other than `is_hit` have no meaning.
+  void reset() {
+    radiance = {};
+    first.is_hit = false;
+    scatterings = 0;
+    escaped = false;
+    fault = {};
+  }
+  /// Records a fault of a material or of a light. The film counts a radiance that is not a number, and takes it as
+  /// black.
+  void record_fault(const SurfacePoint& point) { record_fault({PlugInFault::Kind::material, point.material_id}); }
+  void record_fault(const Light& light) { record_fault({PlugInFault::Kind::light, uint32_t(light.index())}); }
+  void record_fault(PlugInFault by) {
+    fault = by;
+    radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());
+  }
 };
 
 /// Samples of one pixel that are traced together. The first sample index of a bundle is a multiple of `kMost`.
@@ -77,27 +97,16 @@ class Tracer {
   virtual void trace(PathBundle& bundle) = 0;
 };
 
-/// Camera rays of a scene, for an integrator that adapts to it before the render. The whole image is their source,
-/// whichever part of it is rendered.
-class PilotRays {
- public:
-  virtual ~PilotRays() = default;
-  /// Returns bundle 0 or 1 of a pixel, which `pixel` selects at random.
-  virtual PathBundle bundle(uint64_t pixel, uint64_t number) const = 0;
-  /// Linear colour that a radiance adds to the image; where its channels are spectral bands, the sum of what it adds to
-  /// them, and zeros.
-  virtual std::array<double, 3> color(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const = 0;
-};
-
 /// Integrator: estimates the radiance along camera rays.
 class Integrator {
  public:
   virtual ~Integrator() = default;
   /// Called once, before the first path.
   virtual void prepare(const World&) {}
-  /// Called once, after `prepare`. An adaptation may change noise and speed, but not the expected image. Returns a line
-  /// for the log that states the selected settings; empty if there is none.
-  virtual std::string adapt(const World&, const PilotRays&) { return {}; }
+  /// Called once, after `prepare`. What an integrator adapts may change its noise and speed alone; it may trace paths
+  /// of the whole image (CameraSamples). Returns what it selected, as a line for the log; empty if nothing was
+  /// selected.
+  virtual std::string adapt(const World&, const CameraSampling&) { return {}; }
   /// Returns a tracer for one thread, not null. The world and the integrator outlive it. Thread-safe.
   virtual std::unique_ptr<Tracer> tracer(const World& world) const = 0;
 };

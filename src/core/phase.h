@@ -9,6 +9,24 @@
 
 namespace frond {
 
+/// Phase function of Henyey and Greenstein (1941), 1/sr. `cosine`: of the angle between the directions of travel before
+/// and after; `g`: mean cosine.
+inline float henyey_greenstein(float cosine, float g) {
+  const float base = std::max(1 + g * g - 2 * g * cosine, 1e-8f);
+  return (1 - g * g) / (4 * kPi * base * std::sqrt(base));
+}
+
+/// Samples a direction of travel with the density henyey_greenstein; `w` is the one before.
+inline Vec3 sample_henyey_greenstein(const Vec3& w, float g, Vec2 u) {
+  float cosine = 1 - 2 * u.x;
+  if (std::abs(g) > 1e-3f) {
+    const float ratio = (1 - g * g) / (1 + g - 2 * g * u.x);
+    cosine = std::clamp((1 + g * g - ratio * ratio) / (2 * g), -1.f, 1.f);
+  }
+  const float sine = std::sqrt(std::max(0.f, 1 - cosine * cosine)), phi = 2 * kPi * u.y;
+  return Frame::around(w).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+}
+
 /// Phase function: distribution of the direction after a scattering in a medium. Its arguments are directions of
 /// travel, before and after; it depends on the angle between them.
 class Phase {
@@ -22,32 +40,19 @@ class Phase {
 
   /// Density, 1/sr, in each lane for the cosine of the angle between the two directions.
   SampledSpectrum value(float cosine) const {
-    if (!is_bi_lambertian_) return SampledSpectrum(henyey_greenstein(cosine, g_));
+    if (!is_bi_lambertian_) return SampledSpectrum(frond::henyey_greenstein(cosine, g_));
     const float back = reflection_density(cosine), front = reflection_density(-cosine);
     return SampledSpectrum(front) + reflected_ * (back - front);
   }
   /// Samples a direction with the density of lane `lane`. `w` is the direction before.
   Vec3 sample(const Vec3& w, int lane, Vec2 u, RandomStream& rng) const {
-    return is_bi_lambertian_ ? sample_leaf(w, lane, u, rng) : sample_henyey_greenstein(w, u);
+    return is_bi_lambertian_ ? sample_leaf(w, lane, u, rng) : sample_henyey_greenstein(w, g_, u);
   }
 
  private:
   Phase(bool is_bi_lambertian, float g, const SampledSpectrum& reflected)
       : is_bi_lambertian_(is_bi_lambertian), g_(g), reflected_(reflected) {}
 
-  static float henyey_greenstein(float cosine, float g) {
-    const float base = std::max(1 + g * g - 2 * g * cosine, 1e-8f);
-    return (1 - g * g) / (4 * kPi * base * std::sqrt(base));
-  }
-  Vec3 sample_henyey_greenstein(const Vec3& w, Vec2 u) const {
-    float cosine = 1 - 2 * u.x;
-    if (std::abs(g_) > 1e-3f) {
-      const float ratio = (1 - g_ * g_) / (1 + g_ - 2 * g_ * u.x);
-      cosine = std::clamp((1 + g_ * g_ - ratio * ratio) / (2 * g_), -1.f, 1.f);
-    }
-    const float sine = std::sqrt(std::max(0.f, 1 - cosine * cosine)), phi = 2 * kPi * u.y;
-    return Frame::around(w).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
-  }
   /// Density of leaves that only reflect: 2 (sin b - b cos b) / (3 pi^2) for the angle b.
   static float reflection_density(float cosine) {
     const float c = std::clamp(cosine, -1.f, 1.f);

@@ -33,6 +33,24 @@ inline const ParsedParam* find_param(std::span<const ParsedParam> params, std::s
   return found == params.end() ? nullptr : &*found;
 }
 
+/// For a handler: returns the message of the current exception if it is a defect of a plug-in. Rethrows InputError,
+/// Stopped and std::bad_alloc.
+inline std::string plugin_defect() {
+  try {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "it threw an object that is no std::exception";
+  }
+}
+
 /// Returns the result of `make()`. InputError and Stopped pass through; any other exception, and a null pointer as
 /// result, become an InputError at `where` that names the plug-in.
 template <class Make>
@@ -40,16 +58,10 @@ auto make_checked(const PluginInfo& info, const Location& where, const Make& mak
   const auto attempt = [&] {
     try {
       return make();
-    } catch (const InputError&) {
-      throw;
-    } catch (const Stopped&) {
-      throw;
     } catch (const std::bad_alloc&) {
       fail(where, "{} \"{}\" needs more memory than there is", info.kind, info.name);
-    } catch (const std::exception& error) {
-      fail(where, "{} \"{}\" has a defect: {}", info.kind, info.name, error.what());
     } catch (...) {
-      fail(where, "{} \"{}\" has a defect: it threw an object that is no std::exception", info.kind, info.name);
+      fail(where, "{} \"{}\" has a defect: {}", info.kind, info.name, plugin_defect());
     }
   };
   auto made = attempt();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "core/light.h"
@@ -81,6 +82,14 @@ inline Vec3 offset_origin(const Hit& hit, const Vec3& d) {
   // 2^-17 of the largest coordinate (8 um at 1 m) exceeds the errors of barycentrics and of an instance's transform.
   const float lift = hit.extent * 0x1p-17f + 0x1p-40f;
   return hit.p + hit.ng * (dot(d, hit.ng) < 0 ? -lift : lift);
+}
+
+/// Sets a ray that leaves a hit in the direction `d`, without an end. Its time remains. In place: a copy right after
+/// its members were written would stall on store forwarding.
+inline void set_leaving_ray(const Hit& hit, const Vec3& d, Ray& ray) {
+  ray.o = offset_origin(hit, d);
+  ray.d = d;
+  ray.t_max = std::numeric_limits<float>::infinity();
 }
 
 }  // namespace frond

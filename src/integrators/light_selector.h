@@ -40,9 +40,9 @@ class LightSelector {
   /// Whether some light has points or directions to sample: all except delta lights, including emitting surfaces that
   /// no ray can hit.
   bool has_extent() const { return has_extent_; }
-  /// Draws a light by `u` in [0, 1); nothing if no light reaches the point. Leaves in `u` a number in [0, 1) for a
-  /// sample of this light, so that these are as evenly spread as those of all lights. `fine` in [0, 1) gives it the
-  /// digits that the choice has used: `u` has 24 bits.
+  /// Draws a light by `u` in [0, 1); nothing if no light reaches the point. Afterwards `u` is a number in [0, 1) for a
+  /// sample of this light: numbers that are evenly spread over all lights remain so for each light. The choice uses up
+  /// some of the 24 bits of `u`; `fine` in [0, 1) replaces them.
   std::optional<Choice> choose(const LitPoint& point, float& u, float fine) const {
     if (count_ == 1) return Choice{only_, 1};
     const auto choice = choose_among_all(point, u);

@@ -190,9 +190,10 @@ float LightTree::importance(const Node& node, const Vec3& p, const Vec3& n) {
 
 namespace {
 
-/// Probability of the first of two nodes of these importances, not both 0. A node that may light the point has at least
-/// a small one: importances neglect what covers a light, and that of a covered one can be far above all others.
-float share_of_first(float first, float second) {
+/// Probability of the first of two nodes with these importances, not both 0. A node with an importance above 0 has at
+/// least a small probability: importances neglect occlusion, and the importance of an occluded light can be far above
+/// all others.
+float probability_of_first(float first, float second) {
   if (first == 0 || second == 0) return second == 0 ? 1 : 0;
   constexpr float kLeast = 1e-3f;
   return std::clamp(first / (first + second), kLeast, 1 - kLeast);
@@ -208,7 +209,7 @@ std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n,
     const uint32_t second = nodes_[at].second;
     const float a = importance(nodes_[at + 1], p, n), b = importance(nodes_[second], p, n);
     if (!(a + b > 0)) return {};
-    const float first = share_of_first(a, b);
+    const float first = probability_of_first(a, b);
     if (u < first) {
       u = std::min(u / first, 0x1.fffffep-1f), probability *= first, ++at;
     } else {
@@ -226,7 +227,7 @@ float LightTree::probability(const Vec3& p, const Vec3& n, uint32_t light) const
     const uint32_t second = nodes_[at].second;
     const float a = importance(nodes_[at + 1], p, n), b = importance(nodes_[second], p, n);
     if (!(a + b > 0)) return 0;
-    const float first = share_of_first(a, b);
+    const float first = probability_of_first(a, b);
     probability *= trail & 1 ? 1 - first : first;
     at = trail & 1 ? second : at + 1;
   }

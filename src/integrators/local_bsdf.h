@@ -47,9 +47,16 @@ class LocalBsdf {
     return true;
   }
 
+  /// Scatters light that arrives along wo (Bsdf::scatter); the direction of `light` is in world space.
+  void scatter_light(RandomStream& rng, Scattered& light) const {
+    bsdf_->scatter(wo_, rng, {&light, 1});
+    if (!light.weight.is_black()) light.direction = frame_.to_world(light.direction);
+  }
+
   /// Estimates the directional albedo by the mean weight of `samples` samples. Their numbers are an additive recurrence
   /// with a random start, which spreads them evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
-  /// Sequences"); they are independent of the path's own, so that noise of the albedo is not that of the colours.
+  /// Sequences"). They are independent of the path's own numbers, so that the noise of the albedo is not correlated
+  /// with the noise of the colours.
   SampledSpectrum albedo(int samples, uint64_t key) const {
     RandomStream start(key);
     const float uc = start.uniform();

@@ -73,12 +73,12 @@ class PathIntegrator final : public Integrator {
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
 
-  std::string adapt(const World& world, const PilotRays& rays) override {
+  std::string adapt(const World& world, const CameraSampling& sampling) override {
     AdaptedSettings adapted = adapted_;
     adapted.light_samples = adapted.light_samples && settings_.sample_lights && selector_.has_extent();
     if (!adapted.light_samples && !adapted.scattered_rays) return {};
     try {
-      adapt_to_scene(world, selector_, adapted, rays, settings_);
+      adapt_to_scene(world, selector_, adapted, sampling, settings_);
     } catch (const SurfaceError&) {
       // The render throws it again, and its caller names the material.
     }
@@ -90,7 +90,7 @@ class PathIntegrator final : public Integrator {
   }
 
  private:
-  /// What first hits take two of; empty if nothing.
+  /// Numbers of samples at first hits that are two; empty if all are one.
   std::string summary() const {
     std::vector<std::string> two;
     if (const auto count = std::ranges::count(settings_.rays_by_material, 2); count > 0)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <string_view>
 
 #include "core/integrator.h"
@@ -11,7 +10,7 @@
 
 namespace frond {
 
-/// What the integrators `path` and `volpath` share.
+/// Parts that the path loops of `path`, `volpath` and FluxMeter (radiometry/flux.h) share.
 
 /// Values of the parameter "lightsampler", in the order of LightSelector::Strategy.
 inline constexpr std::string_view kLightSamplers[] = {"uniform", "power", "bvh"};
@@ -20,7 +19,7 @@ inline LightSelector::Strategy light_strategy(const Params& p) {
   return LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers);
 }
 
-/// Parameter of both; as in pbrt-v4.
+/// Parameter of `path` and `volpath`; as in pbrt-v4.
 inline constexpr Param kRegularize{.name = "regularize",
                                    .kind = ParamKind::boolean,
                                    .default_value = false,
@@ -29,7 +28,7 @@ inline constexpr Param kRegularize{.name = "regularize",
                                        "dielectrics and coats: alpha below 0.3 becomes 2 alpha, between 0.1 and 0.3. "
                                        "Caustics are blurred, with less noise; biased."};
 
-/// Parameter of both.
+/// Parameter of `path` and `volpath`.
 inline constexpr Param kHideBackground{.name = "hidebackground",
                                        .kind = ParamKind::boolean,
                                        .default_value = false,
@@ -37,35 +36,35 @@ inline constexpr Param kHideBackground{.name = "hidebackground",
                                            "Camera rays that meet no surface bring no light from the environment: a "
                                            "black background, for compositing with channel alpha."};
 
-/// Largest number of invisible surfaces along one path: rounding could make a ray hit the same one without end.
+/// Largest number of surfaces without a BSDF that a path or a shadow ray passes: rounding could make a ray hit the same
+/// surface without end.
 inline constexpr int kMostPassed = 1000;
 
-/// Russian roulette starts after these scatterings.
+/// Russian roulette of `path` and `volpath` starts after these scatterings.
 inline constexpr int kSafeScatterings = 5;
 
 /// A shadow ray ends short of the light's own surface, at this share of the distance.
 inline constexpr float kBeforeLight = 1 - 0x1p-13f;
 
-/// Calls `act`. An exception of a plug-in gets the material of `at`, the surface whose plug-ins were called; nullptr if
-/// there is none. Calls may be nested: the innermost names the surface.
+/// Russian roulette: a path whose `value` is below `full` survives with the probability value / full, which divides its
+/// throughput. Returns false if the path ends.
+inline bool survives_roulette(float value, float full, RandomStream& random, SampledSpectrum& throughput) {
+  if (value >= full) return true;
+  if (random.uniform() * full >= value) return false;
+  throughput *= full / value;
+  return true;
+}
+
+/// Returns `act()`, which calls plug-ins at a surface. An exception of theirs becomes a SurfaceError with the material
+/// of the surface. Calls may be nested: the innermost names the surface.
 template <class Act>
-void with_surface_of_errors(const SurfacePoint* const& at, const Act& act) {
+auto call_plugins_at(const SurfacePoint& point, const Act& act) {
   try {
-    act();
-  } catch (const InputError&) {
-    throw;
-  } catch (const Stopped&) {
-    throw;
+    return act();
   } catch (const SurfaceError&) {
     throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    if (!at) throw;
-    throw SurfaceError(at->material_id, error.what());
   } catch (...) {
-    if (!at) throw;
-    throw SurfaceError(at->material_id, "it threw an object that is no std::exception");
+    throw SurfaceError(point.material_id, plugin_defect());
   }
 }
 
@@ -101,6 +100,11 @@ inline bool is_unit(const Vec3& direction) {
 /// Whether a BSDF may return this sample.
 inline bool is_possible(const LocalBsdf::Sample& sample) {
   return sample.weight.is_physical() && sample.pdf > 0 && is_unit(sample.wi);
+}
+
+/// The same for scattered light.
+inline bool is_possible(const Scattered& light) {
+  return light.weight.is_physical() && (light.weight.is_black() || is_unit(light.direction));
 }
 
 /// Whether a light may return this sample.

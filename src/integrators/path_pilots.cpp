@@ -7,30 +7,45 @@
 #include <map>
 #include <numeric>
 
-#include "integrators/lane_set.h"
+#include "core/stop.h"
 #include "integrators/path_parts.h"
+#include "spectra/color/color_space.h"
 
 namespace frond {
 namespace {
 
-/// CPU time of a camera ray, and of a light sample at a first vertex without its shadow ray and of that ray, with what
-/// is done for them, in units of that of a scattered ray (measured).
+/// CPU times, in units of that of a scattered ray and its vertex (measured): of a camera ray; of a light sample at a
+/// first vertex, without its shadow ray; of that shadow ray.
 constexpr double kCameraRay = 0.6, kLightSample = 0.15, kShadowRay = 0.45;
 
 /// The variance falls with these powers of the number of samples of a pixel: that at edges faster than the rest
 /// (measured, with the sampler "lattice").
 constexpr double kPower = 1.1, kPowerAtEdges = 1.5;
 
-/// From the squared difference of two bundles, at edges, to their variance for 64 samples, the usual number, relative
-/// to that of the rest. The two are halves of one lattice: their difference has the error that all of their samples do
-/// not have, so that its square is 4 (1 - 2^-power) times the variance of a bundle.
+/// Factor that converts the squared difference of two bundles, as far as it is noise at edges, to the variance with 64
+/// samples, the usual number, on the scale of the rest of the noise, whose variance falls with another power. The two
+/// bundles are halves of one lattice, whose errors partly cancel in their sum. Hence the square of their difference is
+/// 4 (1 - 2^-power) times the variance of a bundle.
 const double kEdges = std::pow(64. / PathBundle::kMost, kPower - kPowerAtEdges) / (2 * (1 - std::exp2(-kPowerAtEdges)));
 
 using Color = std::array<double, 3>;
 
-/// What a second sample changes: sums over bundles.
+/// Linear colour that a radiance adds to the image; where the film's channels are spectral bands, the sum of what it
+/// adds to them, and zeros. The colour is RGB, as noise of XYZ would be that of brightness alone: the sampling of
+/// wavelengths keeps the sum of X, Y and Z nearly free of noise.
+Color color_of(const WavelengthStrategy& wavelengths, const SampledSpectrum& radiance,
+               const SampledWavelengths& lambda) {
+  const SensorResponse response = wavelengths.sensor(radiance, lambda);
+  const std::string_view space = wavelengths.film_space();
+  if (space.empty())
+    return {std::accumulate(response.value.begin(), response.value.begin() + response.count, 0.), 0, 0};
+  static const Matrix3 kSrgbFromXyz = find_color_space("linear sRGB")->rgb_from_xyz;
+  return space == kXyzName ? kSrgbFromXyz * response.color() : response.color();
+}
+
+/// Effect of a second sample: sums over bundles.
 struct SecondSample {
-  double saved = 0;  ///< variance of a bundle's sum
+  double saved = 0;  ///< decrease of the variance of a bundle's sum
   double cost = 0;   ///< CPU time
 };
 
@@ -43,15 +58,16 @@ struct Option {
 /// Variance of a pixel by its cause.
 struct Noise {
   double later;  ///< random numbers of light samples and scattered rays
-  double edges;  ///< the rest, which is taken as that of the places of camera rays
+  double edges;  ///< the rest, which is attributed to the positions of camera rays
 
   /// Variance in the same time, if a path takes `cost` times as long, relative to cost^(kPower - 1).
   double in_same_time(double cost) const { return later * cost + edges * std::pow(cost, 1 + kPowerAtEdges - kPower); }
 };
 
-/// Takes those options with which images have least variance in the same time, of the sets of those that save most for
-/// their cost. (Without edges the best set is one of these.) `cost` is the CPU time without options.
-void take_best(std::vector<Option> options, Noise noise, double cost) {
+/// Selects the options with which images have the least variance in the same time. The sets that are compared consist
+/// of the options that save most for their cost; without noise at edges the best set is one of these. `cost` is the CPU
+/// time without options.
+void select_best(std::vector<Option> options, Noise noise, double cost) {
   std::erase_if(options, [](const Option& o) { return !(o.second.saved > 0 && o.second.cost > 0); });
   std::ranges::stable_sort(options, std::greater(), [](const Option& o) { return o.second.saved / o.second.cost; });
   double least = noise.in_same_time(1), relative_cost = 1;
@@ -68,8 +84,10 @@ void take_best(std::vector<Option> options, Noise noise, double cost) {
 /// Paths of a few pixels, two bundles of each, whose first vertices take two of both. All sums are over bundles.
 class Pilot {
  public:
-  Pilot(const World& world, const LightSelector& selector, const PathSettings& settings, const PilotRays& rays)
-      : rays_(rays), tracer_(make_path_tracer(world, selector, settings, &record_)) {}
+  Pilot(const World& world, const LightSelector& selector, const PathSettings& settings, const CameraSampling& sampling)
+      : sampling_(sampling),
+        samples_(sampling, nullptr),
+        tracer_(make_recording_tracer(world, selector, settings, record_)) {}
 
   SecondSample light;
   std::map<uint32_t, SecondSample> scattered;  ///< by material
@@ -77,10 +95,18 @@ class Pilot {
   double cost = 0;                             ///< CPU time
   uint64_t rays_traced = 0;
 
-  void add_pixel(uint64_t pixel) {
+  /// Traces two bundles of a pixel, which `index` selects at random. The sample numbers are those of no other index, as
+  /// small images have fewer pixels than the pilot asks for. Where there are many bands, all bundles have the same
+  /// ones, so that the difference between two is noise. Without the filter: where pixels share samples, noise is that
+  /// of the samples inside a pixel.
+  void add_pixel(uint64_t index) {
+    constexpr uint32_t kAll = (1u << PathBundle::kMost) - 1;
+    const PixelPosition pixel = sampling_.random_pixel(index);
+    PathBundle& bundle = samples_.bundle();
     Color difference{};
     for (const uint64_t which : {0, 1}) {
-      PathBundle bundle = rays_.bundle(pixel, which);
+      samples_.make(pixel, (2 * index + which) * PathBundle::kMost, kAll, 0);
+      bundle.traced = 0;
       tracer_->trace(bundle);
       for (size_t i = 0; i < bundle.results.size(); ++i)
         add(difference, bundle, i, bundle.results[i].radiance, which == 0);
@@ -103,7 +129,7 @@ class Pilot {
  private:
   /// Adds or subtracts the colour of a path.
   void add(Color& sum, const PathBundle& bundle, size_t path, const SampledSpectrum& radiance, bool is_positive) const {
-    const Color color = rays_.color(radiance, bundle.lambda[path]);
+    const Color color = color_of(sampling_.wavelengths, radiance, bundle.lambda[path]);
     for (size_t c = 0; c < 3; ++c) sum[c] += is_positive ? color[c] : -color[c];
   }
 
@@ -119,8 +145,9 @@ class Pilot {
     return kLightSample * double(part.paths.size()) + kShadowRay * rays_of(part);
   }
 
-  /// Adds what first and second samples found, which count half each. The variance of their mean is less than that of
-  /// one of them by a quarter of the mean squared difference of the two, also where they are correlated.
+  /// Adds the effect of the second samples, by the radiance of first and second samples, which count half each. The
+  /// variance of their mean is less than that of one of them by a quarter of the mean squared difference of the two,
+  /// also where they are correlated.
   void add(SecondSample& effect, const PathBundle& bundle, const SplitRecord::Parts& parts,
            const LaneSet& paths) const {
     Color difference{};  // half of that between the samples
@@ -131,7 +158,8 @@ class Pilot {
     add_square(difference, effect.saved);
   }
 
-  const PilotRays& rays_;
+  const CameraSampling& sampling_;
+  CameraSamples samples_;
   SplitRecord record_;
   std::unique_ptr<Tracer> tracer_;
 };
@@ -139,23 +167,24 @@ class Pilot {
 }  // namespace
 
 void adapt_to_scene(const World& world, const LightSelector& selector, const AdaptedSettings& adapted,
-                    const PilotRays& rays, PathSettings& settings) {
+                    const CameraSampling& sampling, PathSettings& settings) {
   constexpr uint64_t kMostRays = 1 << 17;
   constexpr uint64_t kMostPixels = 1024;
   PathSettings two = settings;
   two.light_samples = two.scattered_rays = 2;
-  Pilot pilot(world, selector, two, rays);
+  Pilot pilot(world, selector, two, sampling);
   for (uint64_t pixel = 0; pixel < kMostPixels && pilot.rays_traced < kMostRays; ++pixel) {
     check_stop();
     pilot.add_pixel(pixel);
   }
 
-  // From two of both to what the settings state, and one of what is to be selected.
+  // The pilot takes two samples of both kinds: converts its noise and cost to those of the numbers in the settings,
+  // where the numbers to be selected are one.
   Noise noise{.later = 0, .edges = pilot.variance};
   double cost = pilot.cost;
   std::vector<Option> options;
   const auto consider = [&](const SecondSample& second, bool is_open, int& count) {
-    // With two samples, as much variance is left as the second one has saved.
+    // The variance that remains with two samples is as large as the decrease by the second one.
     noise.edges -= second.saved;
     noise.later += count == 1 ? 2 * second.saved : second.saved;
     if (count == 1) cost -= second.cost;
@@ -168,7 +197,7 @@ void adapt_to_scene(const World& world, const LightSelector& selector, const Ada
     consider(second, adapted.scattered_rays,
              adapted.scattered_rays ? settings.rays_by_material[material] : settings.scattered_rays);
   noise.edges = kEdges * std::max(0., noise.edges);
-  take_best(options, noise, cost);
+  select_best(options, noise, cost);
 }
 
 }  // namespace frond

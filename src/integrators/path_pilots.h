@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/integrator.h"
+#include "core/camera_samples.h"
 #include "integrators/path_tracer.h"
 
 namespace frond {
@@ -12,8 +12,8 @@ struct AdaptedSettings {
 };
 
 /// Selects how many light samples and scattered rays the first vertices of paths take, so that images have the least
-/// variance in the same CPU time, by paths of a few pixels (docs/internals.md). Throws SurfaceError.
+/// variance in the same CPU time, by paths of a few pixels of the whole image (docs/internals.md). Throws SurfaceError.
 void adapt_to_scene(const World& world, const LightSelector& selector, const AdaptedSettings& adapted,
-                    const PilotRays& rays, PathSettings& settings);
+                    const CameraSampling& sampling, PathSettings& settings);
 
 }  // namespace frond

@@ -15,6 +15,7 @@ enum class Use : uint64_t {
   roulette,
   albedo,
   count,
+  medium = count,  ///< at vertices that take one sample of each
 };
 
 /// Key of the random numbers of one vertex: of its rays, and of its streams by use.
@@ -23,11 +24,14 @@ struct VertexKey {
 
   /// For one of several samples or rays, by its index `which`. The step differs from that of a stream's counter, so
   /// that streams do not overlap.
-  uint64_t of(Use use, int which = 0) const {
+  uint64_t key(Use use, int which = 0) const {
     return value + (uint64_t(use) + uint64_t(which) * uint64_t(Use::count)) * 0xd1342543de82ef95ull;
   }
-  RandomStream stream(Use use, int which = 0) const { return RandomStream(of(use, which)); }
+  RandomStream stream(Use use, int which = 0) const { return RandomStream(key(use, which)); }
 };
+
+/// Key of a vertex of a path, by its index along the path.
+inline VertexKey vertex_key(uint64_t path_key, uint64_t vertex) { return {hash_key(path_key, vertex)}; }
 
 /// State of a path.
 struct Path {
@@ -39,7 +43,7 @@ struct Path {
   float scatter_pdf;
   float light_samples;  ///< number of light samples at the last vertex, for MIS
   int scattered_rays;   ///< number of rays that the current vertex scatters
-  float share;          ///< factor on what the path finds: 1 / (number of rays that its first vertex scattered)
+  float share;          ///< factor on the radiance along the path: 1 / (number of rays scattered by its first vertex)
   float power_factor;   ///< factor by which refraction alone has divided the throughput
   int depth;            ///< scattering events so far
   bool is_wide;         ///< one of them was not specular

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/math/sampling.h"
 #include "core/parallel.h"
-#include "integrators/lane_set.h"
 #include "integrators/path_parts.h"
 #include "integrators/path_state.h"
 #include "integrators/vertex_numbers.h"
@@ -15,57 +13,62 @@
 namespace frond {
 namespace {
 
-/// Traces the paths of a bundle together, one vertex after the other.
+/// Recorder of renders: records nothing (SplitRecord).
+struct NoRecord {
+  static constexpr bool kSeparatesSamples = false;
+  void begin() {}
+  void select_light_sample(int, const LaneSet&) {}
+  void select_scattered_ray(int) {}
+  void add_path(size_t, int) {}
+  void add_radiance(size_t, const SampledSpectrum&) {}
+  void add_rays(const LaneSet&) {}
+};
+
+/// Traces the paths of a bundle together, one vertex after the other. `Record`: NoRecord or SplitRecord&.
+template <class Record>
 class PathTracer final : public Tracer {
  public:
-  PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings, SplitRecord* record)
+  PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings, Record record)
       : world_(world), selector_(selector), settings_(settings), record_(record) {}
 
+  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones, and so on.
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
-    at_ = nullptr;
-    if (record_) *record_ = SplitRecord();
-    with_surface_of_errors(at_, [this] { trace(); });
+    record_.begin();
+    branch_ = 0;
+    vertex_ = 0;
+    trace_from_second_vertex(process_hits(intersect_camera_rays(begin_paths())));
+    for (const Branch& branch : branches_) {
+      ++branch_;
+      for (const size_t i : branch.alive) paths_[i] = branch.paths[i];
+      trace_from_second_vertex(branch.alive);
+    }
   }
 
  private:
   static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
   static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
 
-  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones, and so on.
-  void trace() {
-    branch_ = 0;
-    vertex_ = 0;
-    follow(advance(meet_first(begin())));
-    for (const Branch& branch : branches_) {
-      ++branch_;
-      for (const size_t i : branch.alive) paths_[i] = branch.paths[i];
-      follow(branch.alive);
-    }
-  }
-
-  /// Traces paths from their second vertex on.
-  void follow(LaneSet alive) {
-    if (record_) part_ = &record_->scattered[size_t(branch_)];
+  void trace_from_second_vertex(LaneSet alive) {
+    record_.select_scattered_ray(branch_);
     constexpr int kPolled = 64;  // vertices
     for (vertex_ = 1; !alive.empty(); ++vertex_) {
       if (vertex_ % kPolled == 0) check_stop();
-      alive = advance(meet(alive));
+      alive = process_hits(intersect(alive));
     }
-    part_ = nullptr;
   }
 
-  /// One vertex of all paths, whose rays have met surfaces: adds emission, samples lights and BSDFs. Returns the paths
-  /// that continue.
-  LaneSet advance(const LaneSet& met) {
+  /// One vertex of all paths, whose rays hit surfaces: adds emission, samples lights and BSDFs. Returns the paths that
+  /// continue.
+  LaneSet process_hits(const LaneSet& hits) {
     arena_.reset();
-    LaneSet passed;
-    const LaneSet scattering = look(met, passed);
+    LaneSet passing;
+    const LaneSet scattering = evaluate_materials(hits, passing);
     if (settings_.sample_lights && !selector_.empty()) add_sampled_lights(scattering);
-    return scatter(scattering, passed);
+    return sample_bsdfs(scattering, passing);
   }
 
-  LaneSet begin() {
+  LaneSet begin_paths() {
     for (Branch& branch : branches_) branch.alive = LaneSet();
     const LaneSet lanes(bundle_->wanted);
     for (const size_t i : lanes) {
@@ -81,46 +84,39 @@ class PathTracer final : public Tracer {
       path.depth = 0;
       path.is_wide = false;
       path.previous = {path.ray.o, {0, 0, 1}};
-      PathResult& result = bundle_->results[i];
-      result.radiance = {};
-      result.first.is_hit = false;
-      result.scatterings = 0;
-      result.escaped = false;
-      result.fault = {};
+      bundle_->results[i].reset();
     }
     return lanes;
   }
 
-  /// Key of this vertex of a path.
-  VertexKey key_of(size_t lane) const { return {hash_key(bundle_->keys[lane], place_of_numbers())}; }
-
-  /// Index of this vertex for random numbers. Those of a branch lie beyond those of any path of the one before.
-  uint64_t place_of_numbers() const { return uint64_t(vertex_) + (uint64_t(branch_) << 21); }
+  /// Index of the current vertices for random numbers. Those of a branch are above those of any path of the branch
+  /// before.
+  uint64_t vertex_index() const { return uint64_t(vertex_) + (uint64_t(branch_) << 21); }
+  VertexKey current_key(size_t lane) const { return vertex_key(bundle_->keys[lane], vertex_index()); }
 
   /// Intersects camera rays in packets, whose rays do not depend on which results are wanted: a sample does not depend
   /// on which other samples are rendered.
-  LaneSet meet_first(const LaneSet& alive) {
+  LaneSet intersect_camera_rays(const LaneSet& alive) {
     uint32_t hits = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
       if ((bundle_->wanted >> first & kPacket) == 0) continue;
       const RayPacket packet{&bundle_->rays[first], &bundle_->keys[first], bundle_->lanes >> first & kPacket};
       hits |= world_.intersect(packet, &points_[first]) << first;
     }
-    count_rays(alive);
-    return after_rays(alive, hits);
+    return end_escaped(alive, hits);
   }
 
   /// Intersects the next rays one by one, since they are incoherent.
-  LaneSet meet(const LaneSet& alive) {
+  LaneSet intersect(const LaneSet& alive) {
     uint32_t hits = 0;
     for (const size_t i : alive)
-      if (world_.intersect(paths_[i].ray, key_of(i).of(Use::ray), points_[i])) hits |= 1u << i;
-    count_rays(alive);
-    return after_rays(alive, hits);
+      if (world_.intersect(paths_[i].ray, current_key(i).key(Use::ray), points_[i])) hits |= 1u << i;
+    return end_escaped(alive, hits);
   }
 
-  /// Returns the paths that hit a surface; the others receive the environment's radiance and end.
-  LaneSet after_rays(const LaneSet& alive, uint32_t hits) {
+  /// Returns the paths whose rays hit a surface; the others receive the environment's radiance and end.
+  LaneSet end_escaped(const LaneSet& alive, uint32_t hits) {
+    count_rays(alive);
     for (const size_t i : LaneSet(alive.bits() & ~hits)) {
       if (!settings_.hides_background || paths_[i].depth > 0) add_environment(i);
       if (branch_ == 0) bundle_->results[i].escaped = true;
@@ -128,66 +124,58 @@ class PathTracer final : public Tracer {
     return LaneSet(alive.bits() & hits);
   }
 
-  /// Adds emission and evaluates materials. Returns the paths that may be scattered; a path that hits an invisible
-  /// surface goes to `passed`.
-  LaneSet look(const LaneSet& met, LaneSet& passed) {
+  /// Adds emission and evaluates materials. Returns the paths that may be scattered; a path that hits a surface without
+  /// a BSDF is added to `passing`.
+  LaneSet evaluate_materials(const LaneSet& hits, LaneSet& passing) {
     LaneSet scattering;
-    for (const size_t i : met) {
-      const SurfacePoint& point = points_[i];
-      at_ = &point;
-      Path& path = paths_[i];
-      path.key = key_of(i);
-      if (point.light) add_emission(i);
-      const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, arena_);
-      if (!bsdf) {
-        pass(point.hit, path);
-        if (vertex_ - path.depth < kMostPassed) passed.add(i);
-        continue;
-      }
-      if (path.depth == 0) set_first_hit(point, bundle_->results[i].first);
-      if (path.depth >= settings_.max_depth) continue;
-      if (settings_.regularizes && path.is_wide) bsdf = bsdf->regularized(arena_);
-      bsdfs_[i].set(*bsdf, point.hit, -path.ray.d);
-      path.scattered_rays = vertex_ == 0 ? scattered_rays(point, *bsdf) : 1;
-      scattering.add(i);
-    }
-    at_ = nullptr;
+    for (const size_t i : hits) call_plugins_at(points_[i], [&] { evaluate_material(i, scattering, passing); });
     return scattering;
   }
 
+  void evaluate_material(size_t lane, LaneSet& scattering, LaneSet& passing) {
+    const SurfacePoint& point = points_[lane];
+    Path& path = paths_[lane];
+    path.key = current_key(lane);
+    if (point.light) add_emission(lane);
+    const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, arena_);
+    if (!bsdf) {
+      pass_through(point.hit, path);
+      if (vertex_ - path.depth < kMostPassed) passing.add(lane);
+      return;
+    }
+    if (path.depth == 0) set_first_hit(point, bundle_->results[lane].first);
+    if (path.depth >= settings_.max_depth) return;
+    if (settings_.regularizes && path.is_wide) bsdf = bsdf->regularized(arena_);
+    bsdfs_[lane].set(*bsdf, point.hit, -path.ray.d);
+    path.scattered_rays = vertex_ == 0 ? first_scattered_rays(point, *bsdf) : 1;
+    scattering.add(lane);
+  }
+
   /// Number of rays that a first vertex scatters.
-  int scattered_rays(const SurfacePoint& point, const Bsdf& bsdf) const {
+  int first_scattered_rays(const SurfacePoint& point, const Bsdf& bsdf) const {
     const auto& by_material = settings_.rays_by_material;
     const int rays = point.material_id < by_material.size() ? by_material[point.material_id] : settings_.scattered_rays;
     return rays > 1 && is_rough(bsdf) ? rays : 1;
   }
 
-  void add(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
-    if (!radiance.is_physical() || !(weight >= 0)) return blame(lane, light);
+  void add_radiance(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
+    if (!radiance.is_physical() || !(weight >= 0)) return bundle_->results[lane].record_fault(light);
     const SampledSpectrum added = paths_[lane].throughput * radiance * (weight * paths_[lane].share);
     bundle_->results[lane].radiance += added;
-    if (part_) part_->radiance[lane] += added;
+    record_.add_radiance(lane, added);
   }
 
   void count_rays(const LaneSet& lanes) {
     bundle_->traced += lanes.size();
-    if (!part_) return;
-    for (const size_t i : lanes) ++part_->rays[i];
+    record_.add_rays(lanes);
   }
-
-  /// The film counts a sample that is not a number, and takes it as black.
-  void blame(size_t lane, PlugInFault fault) {
-    bundle_->results[lane].fault = fault;
-    bundle_->results[lane].radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());
-  }
-  void blame(size_t lane, const Light& light) { blame(lane, {PlugInFault::Kind::light, uint32_t(light.index())}); }
-  void blame_material(size_t lane) { blame(lane, {PlugInFault::Kind::material, points_[lane].material_id}); }
 
   void add_environment(size_t lane) {
     const Path& path = paths_[lane];
     for (const EnvironmentLight* light : world_.environment())
-      add(lane, *light, light->radiance(path.previous.p, path.ray.d, path.lambda),
-          weight_of(*light, path, [&] { return light->compensated_pdf(path.previous.p, path.ray.d); }));
+      add_radiance(
+          lane, *light, light->radiance(path.previous.p, path.ray.d, path.lambda),
+          scattering_weight(*light, path, [&] { return light->compensated_pdf(path.previous.p, path.ray.d); }));
   }
 
   void add_emission(size_t lane) {
@@ -195,21 +183,21 @@ class PathTracer final : public Tracer {
     const Path& path = paths_[lane];
     const AreaLight& light = *point.light;
     const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};
-    add(lane, light, light.radiance(at, -path.ray.d, path.lambda),
-        weight_of(light, path, [&] { return light.pdf(path.previous.p, at); }));
+    add_radiance(lane, light, light.radiance(at, -path.ray.d, path.lambda),
+                 scattering_weight(light, path, [&] { return light.pdf(path.previous.p, at); }));
   }
 
-  /// MIS weight of emission hit by a scattered ray (power heuristic, Veach and Guibas 1995).
+  /// MIS weight of the emission that a scattered ray hits (power heuristic, Veach and Guibas 1995).
   template <class Pdf>
-  float weight_of(const Light& light, const Path& path, const Pdf& light_pdf) const {
+  float scattering_weight(const Light& light, const Path& path, const Pdf& light_pdf) const {
     if (std::isinf(path.scatter_pdf)) return 1;
     const float pdf = light_pdf() * selector_.probability(light, path.previous);
-    if (!(pdf >= 0)) return pdf;  // `add` reports it
+    if (!(pdf >= 0)) return pdf;  // add_radiance records the fault
     return power_heuristic(path.scatter_pdf, path.light_samples * pdf);
   }
 
   /// Contribution of a light sample to a path if it is not occluded.
-  struct Lit {
+  struct LightContribution {
     SampledSpectrum radiance;
     float weight;
     const Light* light;
@@ -224,71 +212,63 @@ class PathTracer final : public Tracer {
     if (selector_.has_choice()) draw(split, Number::light, numbers_);
     if (selector_.has_extent()) draw(split, Number::on_light, pairs_);
     for (int which = 0; which < count; ++which) {
-      if (record_ && vertex_ == 0) {
-        part_ = &record_->lights[size_t(which)];
-        part_->paths = lanes;
-      }
-      add_light_samples(lanes, which);
+      if (vertex_ == 0) record_.select_light_sample(which, lanes);
+      LaneSet lit, coherent;
+      for (const size_t i : lanes) call_plugins_at(points_[i], [&] { sample_light(i, which, lit, coherent); });
+      count_rays(lit);
+      const uint32_t occluded = occluded_packets(coherent) | occluded_rays(LaneSet(lit.bits() & ~coherent.bits()));
+      for (const size_t i : LaneSet(lit.bits() & ~occluded))
+        add_radiance(i, *lights_[i].light, lights_[i].radiance, lights_[i].weight);
     }
   }
 
-  void add_light_samples(const LaneSet& lanes, int which) {
-    LaneSet lit, coherent;
-    for (const size_t i : lanes) {
-      const SurfacePoint& point = points_[i];
-      at_ = &point;
-      const Path& path = paths_[i];
-      const float number = selector_.has_choice() ? numbers_[size_t(which)][i] : 0;
-      Vec2 on_light = selector_.has_extent() ? pairs_[size_t(which)][i] : Vec2{number, 0};
-      const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light.x, number);
-      if (!chosen) continue;
-      const auto [light, probability] = *chosen;
-      const auto sample = light->sample_compensated(point.hit.p, on_light, path.lambda);
-      if (!sample || sample->radiance.is_black()) continue;
-      if (!is_possible(*sample)) {
-        blame(i, *light);
-        continue;
-      }
-      float scatter_pdf = 0;
-      const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(Use::light_bsdf, which), scatter_pdf);
-      if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY)) {
-        blame_material(i);
-        continue;
-      }
-      if (f_cos.is_black()) continue;
-      scatter_pdf *= float(path.scattered_rays);
-      const float light_pdf = path.light_samples * sample->pdf * probability;
-      const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
-      lit_[i].radiance = f_cos * sample->radiance;
-      lit_[i].weight = weight / light_pdf;
-      lit_[i].light = light;
-      set_shadow_ray(point.hit, *sample, path.ray.time, shadow_rays_[i]);
-      shadow_keys_[i] = path.key.of(Use::shadow_ray, which);
-      lit.add(i);
-      if (vertex_ == 0 && (light->is_delta() || !light->is_distant() || light->sun())) coherent.add(i);
-    }
-    at_ = nullptr;
-    count_rays(lit);
-    const uint32_t dark = occluded_together(coherent) | occluded(LaneSet(lit.bits() & ~coherent.bits()));
-    for (const size_t i : LaneSet(lit.bits() & ~dark)) add(i, *lit_[i].light, lit_[i].radiance, lit_[i].weight);
+  /// Samples a light and evaluates the BSDF in its direction. If the light contributes, sets the contribution and the
+  /// shadow ray, and adds the path to `lit`, and to `coherent` if the shadow rays of neighbouring paths are coherent:
+  /// from the first hit toward delta or nearby lights, or mostly to a sun.
+  void sample_light(size_t lane, int which, LaneSet& lit, LaneSet& coherent) {
+    const SurfacePoint& point = points_[lane];
+    const Path& path = paths_[lane];
+    const float number = selector_.has_choice() ? numbers_[size_t(which)][lane] : 0;
+    Vec2 on_light = selector_.has_extent() ? pairs_[size_t(which)][lane] : Vec2{number, 0};
+    const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light.x, number);
+    if (!chosen) return;
+    const auto [light, probability] = *chosen;
+    const auto sample = light->sample_compensated(point.hit.p, on_light, path.lambda);
+    if (!sample || sample->radiance.is_black()) return;
+    if (!is_possible(*sample)) return bundle_->results[lane].record_fault(*light);
+    float scatter_pdf = 0;
+    const SampledSpectrum f_cos = bsdfs_[lane].f_cos(sample->wi, path.key.stream(Use::light_bsdf, which), scatter_pdf);
+    if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY))
+      return bundle_->results[lane].record_fault(point);
+    if (f_cos.is_black()) return;
+    scatter_pdf *= float(path.scattered_rays);
+    const float light_pdf = path.light_samples * sample->pdf * probability;
+    const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
+    lights_[lane].radiance = f_cos * sample->radiance;
+    lights_[lane].weight = weight / light_pdf;
+    lights_[lane].light = light;
+    set_shadow_ray(point.hit, *sample, path.ray.time, shadow_rays_[lane]);
+    shadow_keys_[lane] = path.key.key(Use::shadow_ray, which);
+    lit.add(lane);
+    if (vertex_ == 0 && (light->is_delta() || !light->is_distant() || light->sun())) coherent.add(lane);
   }
 
-  /// Returns the mask of the occluded paths: shadow rays one by one.
-  uint32_t occluded(const LaneSet& lit) const {
-    uint32_t dark = 0;
+  /// Returns the mask of the paths whose shadow rays are occluded. Traces them one by one.
+  uint32_t occluded_rays(const LaneSet& lit) const {
+    uint32_t occluded = 0;
     for (const size_t i : lit)
-      if (world_.occluded(shadow_rays_[i], shadow_keys_[i])) dark |= 1u << i;
-    return dark;
+      if (world_.occluded(shadow_rays_[i], shadow_keys_[i])) occluded |= 1u << i;
+    return occluded;
   }
 
-  /// The same in packets, for coherent rays: toward delta or nearby lights, or mostly to a sun, from the first hit.
-  uint32_t occluded_together(const LaneSet& lit) const {
-    uint32_t dark = 0;
+  /// The same for coherent rays, in packets.
+  uint32_t occluded_packets(const LaneSet& lit) const {
+    uint32_t occluded = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
       const RayPacket packet{&shadow_rays_[first], &shadow_keys_[first], lit.bits() >> first & kPacket};
-      if (packet.lanes != 0) dark |= world_.occluded(packet) << first;
+      if (packet.lanes != 0) occluded |= world_.occluded(packet) << first;
     }
-    return dark;
+    return occluded;
   }
 
   /// Shadow ray from the offset origin to the same point of the light, ending just short of its surface.
@@ -303,43 +283,42 @@ class PathTracer final : public Tracer {
   static void set_ray(const Hit& hit, const Vec3& direction, Path& path) {
     path.previous.p = hit.p;
     path.previous.n = hit.ng;
-    path.ray.o = offset_origin(hit, direction);
-    path.ray.d = direction;
-    path.ray.t_max = INFINITY;
+    set_leaving_ray(hit, direction, path.ray);
   }
 
-  /// Continues a path straight through an invisible surface. Shadow rays are blocked by it, so no light sample competes
-  /// with emission behind it.
-  static void pass(const Hit& hit, Path& path) {
+  /// Continues a path straight through a surface without a BSDF. Such surfaces block shadow rays, so no light sample
+  /// competes with emission behind them.
+  static void pass_through(const Hit& hit, Path& path) {
     path.scatter_pdf = INFINITY;
     set_ray(hit, path.ray.d, path);
   }
 
-  /// Samples the next directions. Returns the paths that continue, including those in `passed`.
-  LaneSet scatter(const LaneSet& lanes, const LaneSet& passed) {
+  /// Samples the next directions. Returns the paths that continue, including those in `passing`.
+  LaneSet sample_bsdfs(const LaneSet& lanes, const LaneSet& passing) {
     SplitLanes split;
     for (const size_t i : lanes) split.add(i, paths_[i].scattered_rays);
     draw(split, Number::lobe, numbers_);
     draw(split, Number::direction, pairs_);
-    LaneSet alive = passed;
-    for (const size_t i : lanes) {
-      Path& path = paths_[i];
-      at_ = &points_[i];
-      if (path.depth == 0 && bundle_->albedo_samples > 0)
-        bundle_->results[i].first.albedo = first_albedo(points_[i], path.lambda, -path.ray.d, bundle_->albedo_samples,
-                                                        path.key.of(Use::albedo), arena_);
-      for (int which = 0; record_ && vertex_ == 0 && which < path.scattered_rays; ++which)
-        record_->scattered[size_t(which)].paths.add(i);
-      for (int which = 1; which < path.scattered_rays; ++which) {
-        Branch& branch = branches_[size_t(which) - 1];
-        branch.paths[i] = path;
-        if (scatter(i, which, branch.paths[i])) branch.alive.add(i);
-      }
-      if (scatter(i, 0, path)) alive.add(i);
-      if (branch_ == 0) bundle_->results[i].scatterings = path.depth;
-    }
-    at_ = nullptr;
+    LaneSet alive = passing;
+    for (const size_t i : lanes) call_plugins_at(points_[i], [&] { sample_bsdf(i, alive); });
     return alive;
+  }
+
+  /// Samples the rays that a vertex scatters. Adds the path to `alive` if it continues with the first of them.
+  void sample_bsdf(size_t lane, LaneSet& alive) {
+    Path& path = paths_[lane];
+    PathResult& result = bundle_->results[lane];
+    if (path.depth == 0 && bundle_->albedo_samples > 0)
+      result.first.albedo = first_albedo(points_[lane], path.lambda, -path.ray.d, bundle_->albedo_samples,
+                                         path.key.key(Use::albedo), arena_);
+    if (vertex_ == 0) record_.add_path(lane, path.scattered_rays);
+    for (int which = 1; which < path.scattered_rays; ++which) {
+      Branch& branch = branches_[size_t(which) - 1];
+      branch.paths[lane] = path;
+      if (scatter(lane, which, branch.paths[lane])) branch.alive.add(lane);
+    }
+    if (scatter(lane, 0, path)) alive.add(lane);
+    if (branch_ == 0) result.scatterings = path.depth;
   }
 
   /// Samples the direction of one of the rays that a vertex scatters. Returns false if the path ends.
@@ -349,7 +328,7 @@ class PathTracer final : public Tracer {
     LocalBsdf::Sample sample;
     if (!bsdfs_[lane].sample(uc, u, path.key.stream(Use::bsdf, which), sample)) return false;
     if (!is_possible(sample)) {
-      blame_material(lane);
+      bundle_->results[lane].record_fault(points_[lane]);
       return false;
     }
     path.throughput *= sample.weight;
@@ -360,22 +339,19 @@ class PathTracer final : public Tracer {
     path.scatter_pdf =
         !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf * float(path.scattered_rays);
     set_ray(points_[lane].hit, sample.wi, path);
-    if (ends(path)) return false;
+    if (!survives(path)) return false;
     ++path.depth;
     return true;
   }
 
-  /// Returns whether the path ends here; Russian roulette divides the survivors' throughput by their probability. It
-  /// starts after the fifth scattering: earlier, the few survivors add more noise in dark regions than the time saved
-  /// is worth.
-  bool ends(Path& path) const {
-    if (path.throughput.is_black()) return true;
-    if (settings_.cut_off_attenuation) return attenuation(path) * path.power_factor < settings_.cutoff;
-    const float survival = path.throughput.max() * path.power_factor;
-    if (path.depth < kSafeScatterings - 1 || survival >= 1) return false;
-    if (path.key.stream(Use::roulette).uniform() >= survival) return true;
-    path.throughput *= 1 / survival;
-    return false;
+  /// Returns false if the path ends here, by Russian roulette or by the cutoff. Roulette starts after the fifth
+  /// scattering: earlier, the few survivors add more noise in dark regions than the time saved is worth.
+  bool survives(Path& path) const {
+    if (path.throughput.is_black()) return false;
+    if (settings_.cut_off_attenuation) return attenuation(path) * path.power_factor >= settings_.cutoff;
+    if (path.depth < kSafeScatterings - 1) return true;
+    RandomStream random = path.key.stream(Use::roulette);
+    return survives_roulette(path.throughput.max() * path.power_factor, 1, random, path.throughput);
   }
 
   /// The paper's luminance of the attenuation if the lanes are its three colours; else the mean.
@@ -390,20 +366,17 @@ class PathTracer final : public Tracer {
   /// Draws the sampler's numbers of this vertex.
   template <class T>
   void draw(const SplitLanes& lanes, Number number, SplitNumbers<T>& u) const {
-    draw_numbers(*bundle_, place_of_numbers(), number, lanes, record_ != nullptr, u);
+    draw_numbers(*bundle_, vertex_index(), number, lanes, std::remove_reference_t<Record>::kSeparatesSamples, u);
   }
 
   const World& world_;
   const LightSelector& selector_;
   const PathSettings& settings_;
-  PathBundle* bundle_ = nullptr;       ///< current bundle
-  const SurfacePoint* at_ = nullptr;   ///< surface whose plug-ins are called
-  SplitRecord* record_;                ///< or nullptr
-  SplitRecord::Part* part_ = nullptr;  ///< to which rays and radiance belong, if they are recorded
+  Record record_;
+  PathBundle* bundle_ = nullptr;  ///< current bundle
   Arena arena_;
-  /// Index of the vertex for random numbers; invisible surfaces count too.
-  int vertex_ = 0;
-  int branch_ = 0;  ///< index of the rays, among those of each first vertex, that are followed
+  int vertex_ = 0;  ///< index of the current vertices along their paths, surfaces without a BSDF included
+  int branch_ = 0;  ///< index of the rays, among those that each first vertex scatters, that are being traced
   /// Paths whose first vertices scatter several rays, with one of the rays after the first.
   struct Branch {
     LaneSet alive;
@@ -413,7 +386,7 @@ class PathTracer final : public Tracer {
   std::array<Path, kMost> paths_;
   std::array<SurfacePoint, kMost> points_;
   std::array<LocalBsdf, kMost> bsdfs_;
-  std::array<Lit, kMost> lit_;
+  std::array<LightContribution, kMost> lights_;
   std::array<Ray, kMost> shadow_rays_;
   std::array<uint64_t, kMost> shadow_keys_{};
   SplitNumbers<float> numbers_;
@@ -423,8 +396,13 @@ class PathTracer final : public Tracer {
 }  // namespace
 
 std::unique_ptr<Tracer> make_path_tracer(const World& world, const LightSelector& selector,
-                                         const PathSettings& settings, SplitRecord* record) {
-  return std::make_unique<PathTracer>(world, selector, settings, record);
+                                         const PathSettings& settings) {
+  return std::make_unique<PathTracer<NoRecord>>(world, selector, settings, NoRecord());
+}
+
+std::unique_ptr<Tracer> make_recording_tracer(const World& world, const LightSelector& selector,
+                                              const PathSettings& settings, SplitRecord& record) {
+  return std::make_unique<PathTracer<SplitRecord&>>(world, selector, settings, record);
 }
 
 }  // namespace frond

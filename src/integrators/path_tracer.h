@@ -24,8 +24,10 @@ struct PathSettings {
   std::vector<int> rays_by_material;
 };
 
-/// What each light sample and each scattered ray of the first vertices of a bundle finds, by path.
-struct SplitRecord {
+/// Radiance and rays of each light sample and of each scattered ray of the first vertices of a bundle, by path: the
+/// recorder of a PathTracer for pilots. Between `begin` and the first selection nothing is recorded.
+class SplitRecord {
+ public:
   struct Part {
     LaneSet paths;                                              ///< whose first vertex takes this sample
     std::array<SampledSpectrum, PathBundle::kMost> radiance{};  ///< as it counts in the result
@@ -33,12 +35,40 @@ struct SplitRecord {
   };
   using Parts = std::array<Part, kMostSplit>;
   Parts lights, scattered;
+
+  /// The first samples of a bundle's first vertices are distributed like those of paths that take one, and so are the
+  /// second ones.
+  static constexpr bool kSeparatesSamples = true;
+  void begin() { *this = {}; }
+  /// Selects light sample `which` of the first vertices of these paths for the radiance and the rays that follow.
+  void select_light_sample(int which, const LaneSet& paths) {
+    selected_ = &lights[size_t(which)];
+    selected_->paths = paths;
+  }
+  /// Selects scattered ray `which` of the first vertices.
+  void select_scattered_ray(int which) { selected_ = &scattered[size_t(which)]; }
+  /// Adds a path whose first vertex scatters this many rays.
+  void add_path(size_t lane, int rays) {
+    for (int which = 0; which < rays; ++which) scattered[size_t(which)].paths.add(lane);
+  }
+  void add_radiance(size_t lane, const SampledSpectrum& radiance) {
+    if (selected_) selected_->radiance[lane] += radiance;
+  }
+  void add_rays(const LaneSet& lanes) {
+    if (!selected_) return;
+    for (const size_t i : lanes) ++selected_->rays[i];
+  }
+
+ private:
+  Part* selected_ = nullptr;
 };
 
-/// Returns a tracer for one thread. The arguments must outlive it. With a record, each call overwrites it, and the
-/// first samples of a bundle's first vertices are distributed like those of paths that take one, and so are the second
-/// ones.
+/// Returns a tracer for one thread. The arguments must outlive it.
 std::unique_ptr<Tracer> make_path_tracer(const World& world, const LightSelector& selector,
-                                         const PathSettings& settings, SplitRecord* record = nullptr);
+                                         const PathSettings& settings);
+
+/// The same for pilots: each call of `trace` overwrites the record.
+std::unique_ptr<Tracer> make_recording_tracer(const World& world, const LightSelector& selector,
+                                              const PathSettings& settings, SplitRecord& record);
 
 }  // namespace frond

@@ -4,7 +4,7 @@
 
 namespace frond {
 
-/// Only media and surfaces without a BSDF let light pass, as in pbrt-v4.
+/// Only media and surfaces without a BSDF transmit light, as in pbrt-v4.
 bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uint64_t& rays) {
   const bool is_distant = std::isinf(sample.distance);
   const Vec3 end = is_distant ? Vec3{} : origin_.p + sample.wi * sample.distance;
@@ -24,18 +24,16 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
     const bool is_hit = world_.intersect(ray, hash_key(key, uint64_t(passed)), point);
     if (is_hit) {
       arena.reset();
-      const SurfacePoint* const at = &point;
-      bool is_occluded = false;
-      with_surface_of_errors(at, [&] { is_occluded = point.material->evaluate(point.hit, lambda_, arena); });
-      if (is_occluded) return false;
+      const auto bsdf = [&] { return point.material->evaluate(point.hit, lambda_, arena); };
+      if (call_plugins_at(point, bsdf)) return false;
     }
     // An unbounded medium attenuates distant lights over the diameter of the scene, as in pbrt-v4.
-    const float way = is_hit       ? length(point.hit.p - from)
-                      : is_distant ? std::max(0.f, 2 * world_.radius() - travelled)
-                                   : length(end - from);
-    if (medium_ && !pass_medium({from, ray.d, way}, rng)) return false;
+    const float distance = is_hit       ? length(point.hit.p - from)
+                           : is_distant ? std::max(0.f, 2 * world_.radius() - travelled)
+                                        : length(end - from);
+    if (medium_ && !attenuate({from, ray.d, distance}, rng)) return false;
     if (!is_hit) return true;
-    travelled += way;
+    travelled += distance;
     medium_ = medium_beyond(world_, point, ray.d, medium_);
     from = point.hit.p;
     o = offset_origin(point.hit, ray.d);
@@ -44,7 +42,7 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
 }
 
 /// Ratio tracking (Novak et al. 2014); in a homogeneous medium the transmittance itself, with probability 1.
-bool ShadowRay::pass_medium(const Ray& ray, RandomStream& rng) {
+bool ShadowRay::attenuate(const Ray& ray, RandomStream& rng) {
   if (medium_->is_homogeneous()) {
     MajorantSteps steps = medium_->majorants(ray, lambda_);
     MajorantSteps::Step step;

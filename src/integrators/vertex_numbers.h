@@ -1,16 +1,56 @@
 #pragma once
 
 #include <array>
+#include <bit>
 
 #include "core/integrator.h"
-#include "integrators/lane_set.h"
 
 namespace frond {
 
+/// Set of paths of a bundle, by index.
+class LaneSet {
+ public:
+  explicit LaneSet(uint32_t bits = 0) : bits_(bits) {}
+  void add(size_t lane) { bits_ |= 1u << lane; }
+  bool empty() const { return bits_ == 0; }
+  size_t size() const { return size_t(std::popcount(bits_)); }
+  uint32_t bits() const { return bits_; }
+
+  /// Ascending.
+  class Iterator {
+   public:
+    explicit Iterator(uint32_t left) : left_(left) {}
+    size_t operator*() const { return size_t(std::countr_zero(left_)); }
+    void operator++() { left_ &= left_ - 1; }
+    bool operator!=(Iterator other) const { return left_ != other.left_; }
+
+   private:
+    uint32_t left_;
+  };
+  Iterator begin() const { return Iterator(bits_); }
+  Iterator end() const { return Iterator(0); }
+
+ private:
+  uint32_t bits_;
+};
+
 /// Sampler dimensions of a path vertex. Those of the first vertex are the sampler's own (Dimension).
-enum class Number : uint32_t { light, on_light, lobe, direction, count };
+enum class Number : uint32_t {
+  light,
+  on_light,
+  lobe,
+  direction,
+  count,
+  distance = count,  ///< in a medium
+};
 static_assert(uint32_t(Dimension::light) + uint32_t(Number::on_light) == uint32_t(Dimension::on_light));
 static_assert(uint32_t(Dimension::light) + uint32_t(Number::direction) == uint32_t(Dimension::direction));
+
+/// Sampler dimension of a number of a vertex, by the vertex's index. `numbers`: how many of them a vertex has.
+inline uint32_t dimension_of(const PathBundle& bundle, uint64_t vertex, Number number,
+                             uint32_t numbers = uint32_t(Number::count)) {
+  return bundle.dimension + uint32_t(vertex) * numbers + uint32_t(number);
+}
 
 /// Most light samples and scattered rays of one vertex.
 inline constexpr int kMostSplit = 2;
@@ -23,10 +63,9 @@ using SplitNumbers = std::array<std::array<T, PathBundle::kMost>, kMostSplit>;
 class SplitLanes {
  public:
   SplitLanes() = default;
-  SplitLanes(const LaneSet& lanes, int count) { of(count) = lanes; }
-  void add(size_t lane, int count) { of(count).add(lane); }
-  LaneSet& of(int count) { return by_count_[size_t(count) - 1]; }
-  const LaneSet& of(int count) const { return by_count_[size_t(count) - 1]; }
+  SplitLanes(const LaneSet& lanes, int count) { by_count_[size_t(count) - 1] = lanes; }
+  void add(size_t lane, int count) { by_count_[size_t(count) - 1].add(lane); }
+  const LaneSet& with_count(uint32_t count) const { return by_count_[count - 1]; }
 
  private:
   std::array<LaneSet, kMostSplit> by_count_;
@@ -39,19 +78,19 @@ inline void get_numbers(const Sampler& sampler, const PixelSamples& samples, uin
   sampler.get2d(samples, dimension, u);
 }
 
-/// Draws the sampler's numbers of one vertex, by its index. A path that takes n gets those of samples n i to
-/// n i + n - 1, so that the numbers of all paths together are as well distributed as those of n times as many samples.
-/// `separate`: the same numbers in another order, so that the first ones of all paths of the bundle are well
-/// distributed too, and the second ones, and so on.
+/// Draws the sampler's numbers of one vertex, by its index. Path i, if it takes n numbers, gets those of the sampler's
+/// samples n i to n i + n - 1, so that the numbers of all paths together are as well distributed as those of n times as
+/// many samples. `separate`: the same numbers in another order, in which the first numbers of all paths of the bundle
+/// are well distributed too, and so are the second ones.
 template <class T>
 void draw_numbers(const PathBundle& bundle, uint64_t vertex, Number number, const SplitLanes& lanes, bool separate,
                   SplitNumbers<T>& u) {
   constexpr size_t kFew = 4;  // for more paths, the numbers of the whole bundle are as fast
-  const uint32_t dimension = bundle.dimension + uint32_t(vertex) * uint32_t(Number::count) + uint32_t(number);
+  const uint32_t dimension = dimension_of(bundle, vertex, number);
   const PixelSamples& s = bundle.samples;
   std::array<T, size_t(kMostSplit) * PathBundle::kMost> all;
   for (uint32_t n = 1; n <= kMostSplit; ++n) {
-    const LaneSet& paths = lanes.of(int(n));
+    const LaneSet& paths = lanes.with_count(n);
     if (paths.empty()) continue;
     T* const drawn = n == 1 ? u[0].data() : all.data();
     if (paths.size() > kFew || separate) {

@@ -1,23 +1,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/integrator.h"
 #include "core/math/sampling.h"
 #include "integrators/path_parts.h"
+#include "integrators/path_state.h"
 #include "integrators/shadow_ray.h"
-#include "integrators/spectral_path.h"
+#include "integrators/vertex_numbers.h"
 
 namespace frond {
 namespace {
-
-/// Uses of random streams at one path vertex.
-enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo, medium };
-
-/// Sampler dimensions of one vertex.
-enum class Number : uint32_t { light, on_light, lobe, direction, distance, count };
-static_assert(uint32_t(Dimension::light) + uint32_t(Number::direction) == uint32_t(Dimension::direction));
 
 constexpr Param kVolPath[] = {
     {.name = "maxdepth",
@@ -46,7 +39,7 @@ struct VolPathSettings {
   bool hides_background;
 };
 
-/// Traces one path after the other. A loop iteration is one ray: its medium, then the surface that it meets.
+/// Traces one path after the other. A loop iteration is one ray: its medium, then the surface that it hits.
 class VolPathTracer final : public Tracer {
  public:
   VolPathTracer(const World& world, const LightSelector& selector, const VolPathSettings& settings)
@@ -56,24 +49,23 @@ class VolPathTracer final : public Tracer {
     bundle_ = &bundle;
     for (lane_ = 0; lane_ < PathBundle::kMost; ++lane_) {
       if (!(bundle.wanted >> lane_ & 1)) continue;
-      with_surface_of_errors(at_, [this] { trace_path(); });
+      trace_path();
     }
   }
 
  private:
   void trace_path() {
-    begin();
+    begin_path();
     SurfacePoint point;
-    for (vertex_ = 0; vertex_ - depth_ < kMostPassed; ++vertex_) {
+    for (vertex_ = 0; vertex_ - depth_ <= kMostPassed; ++vertex_) {
       poll_();
-      key_ = hash_key(bundle_->keys[lane_], uint64_t(vertex_));
+      key_ = vertex_key(bundle_->keys[lane_], uint64_t(vertex_));
       arena_.reset();
-      at_ = nullptr;
       ++bundle_->traced;
-      const bool is_hit = world_.intersect(ray_, of(Use::ray), point);
+      const bool is_hit = world_.intersect(ray_, key_.key(Use::ray), point);
       if (medium_) {
         const Ray in_medium{from_, ray_.d, is_hit ? length(point.hit.p - from_) : INFINITY};
-        const Passage passage = pass_medium(in_medium);
+        const Passage passage = track_medium(in_medium);
         if (passage == Passage::ended) return;
         if (passage == Passage::scattered) continue;
       }
@@ -82,17 +74,12 @@ class VolPathTracer final : public Tracer {
         if (!settings_.hides_background || depth_ > 0) add_environment();
         return;
       }
-      if (!meet(point)) return;
+      if (!call_plugins_at(point, [&] { return process_hit(point); })) return;
     }
   }
 
-  void begin() {
-    PathResult& r = result();
-    r.radiance = {};
-    r.first.is_hit = false;
-    r.scatterings = 0;
-    r.escaped = false;
-    r.fault = {};
+  void begin_path() {
+    result().reset();
     ray_ = bundle_->rays[lane_];
     ray_.d = normalize(ray_.d);
     from_ = ray_.o;
@@ -113,8 +100,8 @@ class VolPathTracer final : public Tracer {
   enum class Passage : uint8_t { passed, scattered, ended };
 
   /// Delta tracking through the medium of the ray. After a scattering, the next ray is set.
-  Passage pass_medium(const Ray& ray) {
-    RandomStream rng = stream(Use::medium);
+  Passage track_medium(const Ray& ray) {
+    RandomStream rng = key_.stream(Use::medium);
     Passage passage = Passage::passed;
     SampledSpectrum t;
     const bool emits = medium_->is_emissive();
@@ -148,7 +135,8 @@ class VolPathTracer final : public Tracer {
       passage = Passage::ended;
       return false;
     };
-    if (!track(*medium_, ray, lambda_, path_.hero, number(Number::distance), rng, poll_, t, collide)) return passage;
+    if (!track(*medium_, ray, lambda_, path_.hero, draw<float>(Number::distance), rng, poll_, t, collide))
+      return passage;
     const float density = t[path_.hero];
     if (!(density > 0)) return Passage::ended;
     // Shadow rays pass a homogeneous medium with probability 1, others without a collision (ShadowRay).
@@ -170,9 +158,9 @@ class VolPathTracer final : public Tracer {
       add_sampled_light(place, [&](const LightSample& sample, ShadowRay& shadow) {
         shadow.begin({p, {}}, medium_);
         const SampledSpectrum value = at.phase.value(dot(w, sample.wi));
-        return Scattered{value, value};
+        return Scattering{value, value};
       });
-    const Vec3 wi = at.phase.sample(w, path_.hero, pair(Number::direction), rng);
+    const Vec3 wi = at.phase.sample(w, path_.hero, draw<Vec2>(Number::direction), rng);
     const SampledSpectrum value = at.phase.value(dot(w, wi));
     const float density = value[path_.hero];
     if (!(density > 0)) return false;
@@ -189,15 +177,19 @@ class VolPathTracer final : public Tracer {
   }
 
   /// Emission, light sample and scattering at a surface. Returns false if the path ends.
-  bool meet(const SurfacePoint& point) {
-    at_ = &point;
+  bool process_hit(const SurfacePoint& point) {
     if (point.light) add_emission(point);
     const Bsdf* bsdf = point.material->evaluate(point.hit, lambda_, arena_);
     if (!bsdf) {
-      leave(point, ray_.d);
+      leave_surface(point, ray_.d);
       return true;
     }
-    if (depth_ == 0) begin_first_hit(point);
+    if (depth_ == 0) {
+      FirstHit& first = result().first;
+      set_first_hit(point, first);
+      if (bundle_->albedo_samples > 0)
+        first.albedo = first_albedo(point, lambda_, -ray_.d, bundle_->albedo_samples, key_.key(Use::albedo), arena_);
+    }
     if (depth_ >= settings_.max_depth) return false;
     if (settings_.regularizes && is_wide_) bsdf = bsdf->regularized(arena_);
     LocalBsdf local;
@@ -205,19 +197,21 @@ class VolPathTracer final : public Tracer {
     const LightSelector::LitPoint place{point.hit.p, point.hit.ng};
     if (settings_.sample_lights && !selector_.empty())
       add_sampled_light(place, [&](const LightSample& sample, ShadowRay& shadow) {
-        shadow.begin({point.hit.p, offset_origin(point.hit, sample.wi) - point.hit.p}, medium_beyond(point, sample.wi));
+        shadow.begin({point.hit.p, offset_origin(point.hit, sample.wi) - point.hit.p},
+                     medium_beyond(world_, point, sample.wi, medium_));
         float pdf = 0;
-        const SampledSpectrum f = local.f_cos(sample.wi, stream(Use::light_bsdf), pdf);
+        const SampledSpectrum f = local.f_cos(sample.wi, key_.stream(Use::light_bsdf), pdf);
         if (!f.is_physical() || !(pdf >= 0 && pdf < INFINITY)) {
-          blame({PlugInFault::Kind::material, point.material_id});
-          return Scattered{};
+          result().record_fault(point);
+          return Scattering{};
         }
-        return Scattered{f, SampledSpectrum(pdf)};
+        return Scattering{f, SampledSpectrum(pdf)};
       });
     LocalBsdf::Sample sample;
-    if (!local.sample(number(Number::lobe), pair(Number::direction), stream(Use::bsdf), sample)) return false;
+    if (!local.sample(draw<float>(Number::lobe), draw<Vec2>(Number::direction), key_.stream(Use::bsdf), sample))
+      return false;
     if (!is_possible(sample)) {
-      blame({PlugInFault::Kind::material, point.material_id});
+      result().record_fault(point);
       return false;
     }
     path_.beta *= sample.weight;
@@ -227,78 +221,63 @@ class VolPathTracer final : public Tracer {
     is_wide_ = is_wide_ || !sample.is_specular;
     is_specular_ = !settings_.sample_lights || sample.is_specular;
     previous_ = place;
-    leave(point, sample.wi);
-    at_ = nullptr;
+    leave_surface(point, sample.wi);
     return survives();
   }
 
-  const Medium* medium_beyond(const SurfacePoint& point, const Vec3& w) const {
-    return frond::medium_beyond(world_, point, w, medium_);
-  }
   /// Continues in the direction `w`.
-  void leave(const SurfacePoint& point, const Vec3& w) {
-    medium_ = medium_beyond(point, w);
+  void leave_surface(const SurfacePoint& point, const Vec3& w) {
+    medium_ = medium_beyond(world_, point, w, medium_);
     from_ = point.hit.p;
-    ray_ = {offset_origin(point.hit, w), w, INFINITY, ray_.time};
-  }
-
-  void begin_first_hit(const SurfacePoint& point) {
-    FirstHit& first = result().first;
-    set_first_hit(point, first);
-    if (bundle_->albedo_samples > 0)
-      first.albedo = first_albedo(point, lambda_, -ray_.d, bundle_->albedo_samples, of(Use::albedo), arena_);
+    set_leaving_ray(point.hit, w, ray_);
   }
 
   /// Value of the scattering toward a light sample, with the cosine at surfaces, and its density by wavelength.
-  struct Scattered {
+  struct Scattering {
     SampledSpectrum value, density;
   };
 
-  /// `scatter(sample, shadow)` begins the shadow ray and returns the scattering.
+  /// Samples a light and adds its contribution. `scatter(sample, shadow)` begins the shadow ray and returns the
+  /// scattering.
   template <class Scatter>
   void add_sampled_light(const LightSelector::LitPoint& place, const Scatter& scatter) {
-    const float of_choice = selector_.has_choice() ? number(Number::light) : 0;
-    Vec2 on_light = selector_.has_extent() ? pair(Number::on_light) : Vec2{of_choice, 0};
-    const auto chosen = selector_.choose(place, on_light.x, of_choice);
+    const float number = selector_.has_choice() ? draw<float>(Number::light) : 0;
+    Vec2 on_light = selector_.has_extent() ? draw<Vec2>(Number::on_light) : Vec2{number, 0};
+    const auto chosen = selector_.choose(place, on_light.x, number);
     if (!chosen) return;
     const auto [light, probability] = *chosen;
     const auto sample = light->sample_compensated(place.p, on_light, lambda_);
     if (!sample || sample->radiance.is_black()) return;
-    if (!is_possible(*sample)) return blame({PlugInFault::Kind::light, uint32_t(light->index())});
+    if (!is_possible(*sample)) return result().record_fault(*light);
     ShadowRay shadow(world_, lambda_, path_.hero, ray_.time, poll_);
-    const Scattered scattered = scatter(*sample, shadow);
-    if (scattered.value.is_black()) return;
-    if (!shadow.trace(*sample, of(Use::shadow_ray), shadow_arena_, bundle_->traced)) return;
+    const Scattering scattering = scatter(*sample, shadow);
+    if (scattering.value.is_black()) return;
+    if (!shadow.trace(*sample, key_.key(Use::shadow_ray), shadow_arena_, bundle_->traced)) return;
     const SampledSpectrum of_light = path_.r_u * shadow.path().r_l * (sample->pdf * probability);
     const SampledSpectrum of_scattering =
-        light->is_delta() ? SampledSpectrum() : path_.r_u * shadow.path().r_u * scattered.density;
+        light->is_delta() ? SampledSpectrum() : path_.r_u * shadow.path().r_u * scattering.density;
     const float sum = mean(of_light + of_scattering, lambda_);
-    if (sum > 0) result().radiance += path_.beta * scattered.value * shadow.path().beta * sample->radiance * (1 / sum);
+    if (sum > 0) result().radiance += path_.beta * scattering.value * shadow.path().beta * sample->radiance * (1 / sum);
   }
 
-  /// Radiance that the path meets, weighted by the balance heuristic over wavelengths and light samples.
+  /// Adds emitted radiance, weighted by the balance heuristic over wavelengths and light samples.
   template <class Pdf>
-  void add(const Light& light, const SampledSpectrum& radiance, const Pdf& light_pdf) {
+  void add_radiance(const Light& light, const SampledSpectrum& radiance, const Pdf& light_pdf) {
     const float pdf = is_specular_ ? 0 : light_pdf() * selector_.probability(light, previous_);
-    if (!radiance.is_physical() || !(pdf >= 0)) return blame({PlugInFault::Kind::light, uint32_t(light.index())});
+    if (!radiance.is_physical() || !(pdf >= 0)) return result().record_fault(light);
     const SampledSpectrum density = path_.r_u + path_.r_l * pdf;
     const float sum = mean(density, lambda_);
     if (sum > 0) result().radiance += path_.beta * radiance * (1 / sum);
   }
   void add_environment() {
     for (const EnvironmentLight* light : world_.environment())
-      add(*light, light->radiance(previous_.p, ray_.d, lambda_),
-          [&] { return light->compensated_pdf(previous_.p, ray_.d); });
+      add_radiance(*light, light->radiance(previous_.p, ray_.d, lambda_),
+                   [&] { return light->compensated_pdf(previous_.p, ray_.d); });
   }
   void add_emission(const SurfacePoint& point) {
     const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};
-    add(*point.light, point.light->radiance(at, -ray_.d, lambda_), [&] { return point.light->pdf(previous_.p, at); });
-  }
-
-  /// The film counts a sample that is not a number, and takes it as black.
-  void blame(PlugInFault fault) {
-    result().fault = fault;
-    result().radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());
+    add_radiance(*point.light, point.light->radiance(at, -ray_.d, lambda_),
+                 [&] { return point.light->pdf(previous_.p, at); });
   }
 
   /// Russian roulette as in the integrator path, on the throughput relative to its density; counts a scattering that
@@ -306,34 +285,23 @@ class VolPathTracer final : public Tracer {
   bool survives() {
     const float density = mean(path_.r_u, lambda_);
     if (path_.beta.is_black() || !(density > 0)) return false;
-    const float survival = path_.beta.max() * power_factor_ / density;
-    if (depth_ + 1 >= kSafeScatterings && survival < 1) {
-      if (stream(Use::roulette).uniform() >= survival) return false;
-      path_.beta *= 1 / survival;
-    }
+    RandomStream random = key_.stream(Use::roulette);
+    if (depth_ + 1 >= kSafeScatterings &&
+        !survives_roulette(path_.beta.max() * power_factor_ / density, 1, random, path_.beta))
+      return false;
     result().scatterings = ++depth_;
     return true;
   }
 
   PathResult& result() { return bundle_->results[lane_]; }
-  /// The step differs from that of a stream's counter, so that streams do not overlap.
-  uint64_t of(Use use) const { return key_ + uint64_t(use) * 0xd1342543de82ef95ull; }
-  RandomStream stream(Use use) const { return RandomStream(of(use)); }
-  uint32_t dimension(Number n) const {
-    return bundle_->dimension + uint32_t(vertex_) * uint32_t(Number::count) + uint32_t(n);
-  }
-  PixelSamples sample() const {
+  /// Draws a number, or a pair of numbers, of the sampler for this vertex.
+  template <class T>
+  T draw(Number number) const {
+    constexpr uint32_t kNumbers = uint32_t(Number::distance) + 1;
     const PixelSamples& s = bundle_->samples;
-    return {s.x, s.y, s.first + lane_, 1};
-  }
-  float number(Number n) const {
-    float u;
-    bundle_->sampler.get1d(sample(), dimension(n), &u);
-    return u;
-  }
-  Vec2 pair(Number n) const {
-    Vec2 u;
-    bundle_->sampler.get2d(sample(), dimension(n), &u);
+    T u;
+    get_numbers(bundle_->sampler, {s.x, s.y, s.first + lane_, 1},
+                dimension_of(*bundle_, uint64_t(vertex_), number, kNumbers), &u);
     return u;
   }
 
@@ -341,15 +309,15 @@ class VolPathTracer final : public Tracer {
   const LightSelector& selector_;
   const VolPathSettings& settings_;
   PathBundle* bundle_ = nullptr;
-  size_t lane_ = 0;                   ///< of the bundle
-  const SurfacePoint* at_ = nullptr;  ///< surface whose plug-ins are called
+  size_t lane_ = 0;  ///< of the bundle
   Arena arena_, shadow_arena_;
   StopPoll poll_;  ///< counts rays and null collisions
   // State of the path.
   int vertex_ = 0, depth_ = 0;
-  uint64_t key_ = 0;
+  VertexKey key_{};
   Ray ray_;
-  Vec3 from_;  ///< where the ray begins; its origin is offset from there, which is not to shorten its way in a medium
+  Vec3 from_;  ///< vertex from which the ray leaves: distances in a medium are counted from it, not from the ray's
+               ///< origin
   SampledWavelengths lambda_;
   SpectralPath path_;
   const Medium* medium_ = nullptr;

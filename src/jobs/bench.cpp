@@ -10,7 +10,6 @@
 #include "instruments/given_wavelengths.h"
 #include "jobs/record/common_params.h"
 #include "jobs/support/call_benchmarks.h"
-#include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/chart.h"
 #include "system/machine.h"
@@ -80,8 +79,8 @@ class TimedMaterials {
       if (std::ranges::count(labels_, text) > 0) fail({}, "{}: the same material twice", text);
       labels_.push_back(text);
       for (const GivenWavelengths& w : wavelengths_) {
-        materials_.push_back(ready_material(text, run.session().registry(), w, run.session().pool(), run.log(),
-                                            run.context.options().cache));
+        materials_.push_back(prepared_material(text, run.session().registry(), w, run.session().pool(), run.log(),
+                                               run.context.options().cache));
         Arena arena;
         if (!materials_.back()->evaluate(flat_hit(), w.sample(0), arena))
           fail({}, "{}: the material has no surface there (an alpha of 0, for one): it cannot be measured", text);

@@ -176,7 +176,7 @@ Result comparison_result(const ModelMeasurement& reference, const std::vector<Mo
   const ModelMeasurement* enough = nullptr;
   for (const ModelMeasurement& m : models) {
     add(m);
-    const BrfVerdict v = judge(reference.brf, m.brf, within);
+    const BrfVerdict v = check_agreement(reference.brf, m.brf, within);
     verdicts.add("model", m.model.label);
     verdicts.add("us_per_path", m.cpu_us_per_path);
     verdicts.add("worst_difference", v.worst);

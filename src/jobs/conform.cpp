@@ -5,9 +5,8 @@
 #include "instruments/conformance/material_conformance.h"
 #include "instruments/given_wavelengths.h"
 #include "jobs/record/common_params.h"
-#include "render/material_words.h"
+#include "render/measured_material.h"
 #include "render/progress.h"
-#include "render/refusing_log.h"
 #include "report/chart.h"
 #include "report/conform_report.h"
 #include "scene/resolver.h"
@@ -97,7 +96,7 @@ class MaterialTest {
         material_(parse_material(text_, registry_)),
         others_(scene_of_materials(registry_)) {
     const PluginText parsed = parse_plugin_text(text_, {});
-    given_ = {parsed.params.empty() ? "defaults" : words_of(parsed), material_.plugin};
+    given_ = {parsed.params.empty() ? "defaults" : parameter_text(parsed), material_.plugin};
     if (run.args.flag("given-only")) return;
     SweepOptions sweep{.pinned = material_.plugin.params, .seed = run.args.seed("seed")};
     if (!run.args.flag("sweep")) sweep.random_corners = sweep.random_points = 0, sweep.infinite_ends = false;

@@ -9,7 +9,6 @@
 #include "instruments/given_wavelengths.h"
 #include "jobs/record/common_params.h"
 #include "radiometry/radiometer_scene.h"
-#include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/text_output.h"
 #include "system/atomic_file.h"
@@ -153,8 +152,8 @@ Result export_material(const JobRun& run) {
   Session& session = run.session();
   const auto prepare = [&](const std::vector<double>& nm) -> std::shared_ptr<const Material> {
     run.check_stop();
-    return ready_material(material, session.registry(), GivenWavelengths({nm.begin(), nm.end()}), session.pool(),
-                          run.log(), run.context.options().cache, keep_energy);
+    return prepared_material(material, session.registry(), GivenWavelengths({nm.begin(), nm.end()}), session.pool(),
+                             run.log(), run.context.options().cache, keep_energy);
   };
   const uint64_t seed = hash_key(args.seed("seed"), material_seed(material));
   write_text(args.text("output"), format.write({material, prepare, seed, session.pool(), run.log()}, request));

@@ -177,12 +177,12 @@ void check_physical(const SceneDescription& description, const JobRun& run) {
 std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescription& description,
                                             const FluxMeter& meter, const SpectrumPtr& irradiance) {
   const auto bands = meter.scene().wavelengths().bands();
-  if (!PhotonWeights::are_covered_by(bands)) return {};
+  if (!PhotonWeights::cover_par(bands)) return {};
   check_physical(description, run);
-  if (irradiance) return PhotonWeights::of(bands, *irradiance);
+  if (irradiance) return PhotonWeights::from_irradiance(bands, *irradiance);
   if (photon_light_name(run, description) == kOfScene)
-    return PhotonWeights::of(bands, *horizontal_irradiance(meter.scene(), {400, 700}));
-  return PhotonWeights::of(bands, *named_spectrum(kOfPhotons, {}));
+    return PhotonWeights::from_irradiance(bands, *horizontal_irradiance(meter.scene(), {400, 700}));
+  return PhotonWeights::from_irradiance(bands, *named_spectrum(kOfPhotons, {}));
 }
 
 /// Says why there are no photons, and if --irradiance is given, that it has no effect.
@@ -208,7 +208,7 @@ std::string more_paths_advice(const Arguments& args) {
 void warn_of_unmet(const JobRun& run, const FluxMeasurement& measurement) {
   std::vector<std::string> unmet;
   for (const FluxMeasurement::OfMaterial& m : measurement.materials)
-    if (!m.is_met) unmet.push_back('"' + m.name + '"');
+    if (!m.is_hit) unmet.push_back('"' + m.name + '"');
   if (!unmet.empty())
     run.log().warn({},
                    fmt::format("no path met the material{} {}: {} shares are unknown; {}, or give a smaller {}",

@@ -26,7 +26,7 @@ constexpr JobParam kParams[] = {
 
 /// Throws InputError, or warns with --allow-holes, if samples or pixels are missing.
 void check_holes(const RenderPart& whole, const JobRun& run) {
-  const std::string missing = what_is_missing(whole);
+  const std::string missing = missing_samples_text(whole);
   if (missing.empty()) return;
   if (!run.args.flag("allow-holes"))
     fail({}, "no part has {}; {} writes the image without them", missing, run.args.spelled("allow-holes"));
@@ -36,7 +36,7 @@ void check_holes(const RenderPart& whole, const JobRun& run) {
 /// Writes the image of the merged parts, with warnings about missing samples.
 void write_merged(const RenderPart& whole, const ImageOutput& output, const JobRun& run) {
   check_holes(whole, run);
-  if (lacks_neighbors(whole.film))
+  if (lacks_neighboring_samples(whole.film))
     run.log().warn({},
                    "pixels at the edges lack samples of neighbouring pixels within the filter's radius: other parts of "
                    "the image contain them");

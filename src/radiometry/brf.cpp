@@ -45,8 +45,8 @@ std::string text_of(const std::vector<ViewDirection>& views) {
   return text;
 }
 
-/// Whether paths traced from the sensor meet models that take the light's direction as incident: their weights are
-/// unbounded (docs/conventions.md).
+/// Whether the scene has stochastic models that take the light's direction as incident: the weights of paths traced
+/// from the sensor are then unbounded (docs/conventions.md).
 bool has_heavy_tails(const Scene& scene, size_t materials) {
   const SampledWavelengths lambda = scene.wavelengths().sample(0.5f);
   const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}, {}}};

@@ -31,7 +31,7 @@ std::vector<MeanError> relative_to(const BrfMeasurement& reference, const BrfMea
   return differences;
 }
 
-BrfVerdict judge(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within) {
+BrfVerdict check_agreement(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within) {
   constexpr double kRate = 0.05;
   const auto differences = relative_to(reference, measurement);
   const double z =

@@ -19,6 +19,6 @@ struct BrfVerdict {
 
 /// Returns `enough` if all differences are within the limit with 95 % joint confidence, `not_enough` if one exceeds it,
 /// else `unknown`. Measurements with heavy tails are always `unknown`.
-BrfVerdict judge(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within);
+BrfVerdict check_agreement(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within);
 
 }  // namespace frond

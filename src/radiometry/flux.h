@@ -30,7 +30,7 @@ struct FluxMeasurement {
     std::vector<MeanError> absorbed;    ///< by its surfaces
     std::vector<MeanError> incident;    ///< light on either side; repeated incidence counts each time
     std::vector<MeanError> uncollided;  ///< the share of `incident` without an earlier interaction
-    bool is_met = true;                 ///< by any path; else the shares are 0 with an unknown error, NaN
+    bool is_hit = true;                 ///< by any path; else the shares are 0 with an unknown error, NaN
   };
   std::vector<Band> bands;
   std::vector<MeanError> reflected;    ///< leaves upward
@@ -69,7 +69,7 @@ class FluxMeter {
   const Scene& scene() const;
 
  private:
-  class Sums;
+  class Block;
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -7,8 +7,8 @@
 namespace frond {
 namespace {
 
-/// `share(i)` is that of instance i. An instance is dark if it absorbs less than this of what falls on a horizontal
-/// surface of its area: a share that may be of rounding errors alone, and whose error is without interest.
+/// `share(i)`: share that instance i absorbs. An instance is dark if it absorbs less than kDark of the light on a
+/// horizontal surface of its area: rounding errors alone can have this size.
 template <class Share>
 InstanceErrors errors_of(std::string light, const FluxMeasurement& measurement, const Share& share) {
   constexpr double kDark = 1e-4;

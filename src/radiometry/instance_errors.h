@@ -9,10 +9,10 @@
 
 namespace frond {
 
-/// Relative standard errors of the light that single instances absorb: of PAR photons, or without them in the band in
-/// which their median is largest. Instances count that are not dark and whose standard error is known: the others
-/// absorbed the light of no path. Stochastic BSDFs have weights above 1, so that a mean of few paths may be 0 or less:
-/// its relative error is infinite.
+/// Relative standard errors of the light that single instances absorb: of PAR photons, or, if there are none, in the
+/// band with the largest median. Only instances count that are not dark and whose standard error is known, that is,
+/// that absorbed light of some path. Stochastic BSDFs have weights above 1, so that a mean of few paths may be 0 or
+/// negative: its relative error is infinite.
 struct InstanceErrors {
   std::string light;                   ///< "PAR photons", "light at 550 nm"
   double median = NAN, largest = NAN;  ///< NaN if no instance counts

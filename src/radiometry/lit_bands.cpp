@@ -11,7 +11,7 @@ namespace frond {
 namespace {
 
 /// Throws InputError for the first wavelength at which `lit`, a response times another irradiance, is above 0, and the
-/// scene's irradiance is 0: no path can say what becomes of such light.
+/// scene's irradiance is 0: no path carries such light.
 void check_scene_has_light(const std::vector<ResponsePoint>& lit, const Spectrum& of_scene, const std::string& name) {
   std::vector<double> nm = points_nm(of_scene, {lit.front().nm, lit.back().nm});
   for (const ResponsePoint& p : lit) nm.push_back(p.nm);

@@ -8,13 +8,14 @@
 
 namespace frond {
 
-/// Wavelengths of light paths: those of the scene's strategy, but in a band with a response with a density in
-/// proportion to response times irradiance. So the mean of the shares that paths carry is the share of the band's light
-/// (docs/radiometry.md), and each path has the same weight.
+/// Wavelengths of light paths. In a band with a response, the density is proportional to response times irradiance: the
+/// mean of the shares that paths carry is then the share of the band's light (docs/radiometry.md), and each path has
+/// the same weight. Otherwise the wavelengths are those of the scene's strategy.
 class LitBands {
  public:
-  /// `irradiance`: of any unit; nullptr: that of the scene. `strategy` must outlive this object. Throws InputError for
-  /// an irradiance that is unknown or 0 in a band, or larger than 0 at a wavelength at which the scene has no light.
+  /// `irradiance`: of any unit; nullptr: the irradiance of the scene. `strategy` must outlive this object. Throws
+  /// InputError for an irradiance that is unknown or 0 in a band, or larger than 0 at a wavelength at which the scene
+  /// has no light.
   LitBands(const WavelengthStrategy& strategy, const HorizontalIrradiance& of_scene, const SpectrumPtr& irradiance);
 
   /// As WavelengthStrategy::sample_for_index.

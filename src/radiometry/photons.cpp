@@ -25,7 +25,7 @@ std::vector<size_t> bands_of_par(std::span<const Band> bands) {
 
 }  // namespace
 
-bool PhotonWeights::are_covered_by(std::span<const Band> bands) {
+bool PhotonWeights::cover_par(std::span<const Band> bands) {
   constexpr double kSlack = 10, kWidest = 50;
   const std::vector<size_t> within = bands_of_par(bands);
   if (within.size() < 2) return false;
@@ -35,8 +35,8 @@ bool PhotonWeights::are_covered_by(std::span<const Band> bands) {
   return true;
 }
 
-std::optional<PhotonWeights> PhotonWeights::of(std::span<const Band> bands, const Spectrum& irradiance) {
-  if (!are_covered_by(bands)) return {};
+std::optional<PhotonWeights> PhotonWeights::from_irradiance(std::span<const Band> bands, const Spectrum& irradiance) {
+  if (!cover_par(bands)) return {};
   check_covers(irradiance, kPar_nm, "photons need");
   const std::vector<size_t> within = bands_of_par(bands);
   std::vector<double> nm = points_nm(irradiance, kPar_nm);

@@ -19,9 +19,9 @@ struct PhotonWeights {
   /// linear between the bands. Returns nullopt unless the bands, in any order, are single wavelengths that cover 400 to
   /// 700 nm, to within 10 nm, in steps of at most 50 nm. Throws InputError for an irradiance that is unknown or 0
   /// there.
-  static std::optional<PhotonWeights> of(std::span<const Band> bands, const Spectrum& irradiance);
-  /// Returns whether `of` returns weights.
-  static bool are_covered_by(std::span<const Band> bands);
+  static std::optional<PhotonWeights> from_irradiance(std::span<const Band> bands, const Spectrum& irradiance);
+  /// Returns whether the bands cover PAR, so that `from_irradiance` returns weights.
+  static bool cover_par(std::span<const Band> bands);
   /// Returns the share of photons, from those by band. Its standard error is an upper bound, because bands share their
   /// paths.
   MeanError share(std::span<const MeanError> by_band) const;

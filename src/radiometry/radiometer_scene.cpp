@@ -55,7 +55,7 @@ std::optional<size_t> largest_flat_surface(const Geometry& geometry) {
 }
 
 /// Returns bounds with few digits, which contain the given ones.
-FileBounds with_few_digits(const FileBounds& b) {
+FileBounds rounded_outward(const FileBounds& b) {
   const double size = std::max({b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z});
   const double per_unit = std::pow(10, 4 - std::floor(std::log10(size)));  // steps of 1e-4 of the size
   const auto down = [per_unit](double x) { return std::floor(x * per_unit) / per_unit; };
@@ -64,7 +64,7 @@ FileBounds with_few_digits(const FileBounds& b) {
 }
 
 /// Warns if all but the ground covers less than half of the target, which is the whole scene.
-void warn_of_empty_ground(const Scene& scene, const Target& target, const Log& log) {
+void warn_about_empty_ground(const Scene& scene, const Target& target, const Log& log) {
   constexpr double kMostly = 0.5;
   const Geometry& geometry = scene.geometry();
   const auto ground = largest_flat_surface(geometry);
@@ -73,7 +73,7 @@ void warn_of_empty_ground(const Scene& scene, const Target& target, const Log& l
   if (rest.is_empty() || geometry.bounds_of(*ground).max.z > rest.max.z) return;
   const double share = horizontal_area(rest) / ((target.x1 - target.x0) * (target.y1 - target.y0));
   if (!(share > 0 && share < kMostly)) return;
-  const FileBounds better = with_few_digits(in_file(rest, scene));
+  const FileBounds better = rounded_outward(in_file(rest, scene));
   log.warn({}, fmt::format("the target is the whole scene, by default, and all but the ground covers {:.2g} % of it: "
                            "--target {:.12g},{:.12g},{:.12g},{:.12g},{:.12g} measures that",
                            100 * share, better.min.x, better.max.x, better.min.y, better.max.y, better.max.z));
@@ -131,7 +131,7 @@ Target default_target(const Scene& scene, const Log& log) {
   }
   if (!(target.x0 < target.x1 && target.y0 < target.y1))
     fail({}, "the scene has no horizontal extent: give --target x0,x1,y0,y1,z");
-  if (!scene.period()) warn_of_empty_ground(scene, target, log);
+  if (!scene.period()) warn_about_empty_ground(scene, target, log);
   return target;
 }
 

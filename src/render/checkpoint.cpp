@@ -17,7 +17,7 @@ namespace {
 
 /// True if `path` is still the name of the open file. Another process may have deleted or replaced the file, and then a
 /// lock on it has no effect.
-bool is_there(int descriptor, const std::filesystem::path& path) {
+bool is_name_of(int descriptor, const std::filesystem::path& path) {
   struct stat opened {
   }, named{};
   return fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
@@ -33,7 +33,7 @@ PartLock::PartLock(const std::filesystem::path& part) : path_(part) {
     if (descriptor_ < 0) fail({}, "cannot write \"{}\": {}", path_.string(), std::strerror(errno));
     const bool has_lock = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
     if (!has_lock && errno != EWOULDBLOCK) return;  // some file systems have no locks
-    if (has_lock && is_there(descriptor_, path_)) return;
+    if (has_lock && is_name_of(descriptor_, path_)) return;
     close(descriptor_);
     if (!has_lock)
       throw Busy(

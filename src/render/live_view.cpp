@@ -22,7 +22,7 @@ LiveView::~LiveView() { end_thread(true); }
 void LiveView::finish(bool in_halves) {
   end_thread(false);
   if (has_failed_) return;
-  renew_image(film_, format_, {}, image_);
+  update_image(film_, format_, {}, image_);
   if (in_halves) round_to_halves(image_.pixels);
   show("it may not show the final image");
 }
@@ -47,7 +47,7 @@ void LiveView::run(const std::stop_token& stop) {
   std::unique_lock lock(none);
   const double begin = cpu_seconds();
   while (!stop.stop_requested()) {
-    if (!renew_image(film_, format_, stop, image_)) return;
+    if (!update_image(film_, format_, stop, image_)) return;
     show("the render goes on without it");
     if (has_failed_) return;
     do {

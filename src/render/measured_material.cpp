@@ -1,8 +1,6 @@
 #include "render/measured_material.h"
 
-#include "core/log.h"
-#include "render/material_words.h"
-#include "render/refusing_log.h"
+#include "core/math/random.h"
 #include "scene/resolver.h"
 
 namespace frond {
@@ -21,9 +19,34 @@ class WarningLog final : public Log {
 
 }  // namespace
 
-std::shared_ptr<Material> ready_material(const std::string& text, const Registry& registry,
-                                         const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
-                                         const std::filesystem::path& cache_dir, const AdjustMaterials& adjust) {
+MaterialWords parse_material(const std::string& text, const Registry& registry) {
+  const PluginText parsed = parse_plugin_text(text, {});
+  MaterialWords material{registry.materials.get(parsed.name, {}), {parsed.name, {}, {}}};
+  set_params(parsed, material.info, {}, material.plugin);
+  return material;
+}
+
+std::string parameter_text(const PluginText& material) {
+  std::string words;
+  for (const auto& [name, value] : material.params) words += (words.empty() ? "" : " ") + name + '=' + value;
+  return words;
+}
+
+uint64_t material_seed(const std::string& text) {
+  const PluginText material = parse_plugin_text(text, {});
+  return hash_bytes(material.params.empty() ? material.name : material.name + ' ' + parameter_text(material));
+}
+
+SceneDescription scene_of_materials(const Registry& registry) {
+  SceneDescription description;
+  for (const std::string_view name : registry.materials.names())
+    description.materials.push_back({std::string(name), {std::string(name), {}, {}}});
+  return description;
+}
+
+std::shared_ptr<Material> prepared_material(const std::string& text, const Registry& registry,
+                                            const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
+                                            const std::filesystem::path& cache_dir, const AdjustMaterials& adjust) {
   SceneDescription description = scene_of_materials(registry);
   description.materials.push_back({"", parse_material(text, registry).plugin});
   if (adjust) adjust(description, registry);
@@ -52,8 +75,8 @@ MeasuredMaterial::MeasuredMaterial(const std::string& text, const Registry& regi
   const WarningLog warnings(log);
   for (const Beam& beam : beams)
     materials_.push_back(
-        beam.band ? ready_material(text, registry, OneBand(*beam.band), pool, warnings, cache_dir)
-                  : ready_material(text, registry, OneWavelength(beam.lambda_nm), pool, warnings, cache_dir));
+        beam.band ? prepared_material(text, registry, OneBand(*beam.band), pool, warnings, cache_dir)
+                  : prepared_material(text, registry, OneWavelength(beam.lambda_nm), pool, warnings, cache_dir));
 }
 
 }  // namespace frond

@@ -10,22 +10,9 @@
 
 #include "core/stop.h"
 #include "scene/scene.h"
-#include "system/machine.h"
 
 namespace frond {
 namespace {
-
-class Clock {
- public:
-  void stop(RenderStatistics& s) const {
-    s.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
-    s.cpu_seconds = cpu_seconds() - cpu_;
-  }
-
- private:
-  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
-  double cpu_ = cpu_seconds();
-};
 
 /// Divides a plan into work items, each a block of samples of a tile. The first blocks of all tiles come before the
 /// second ones, so that an interrupted render has about the same number of samples everywhere.
@@ -68,14 +55,17 @@ class Worker {
  public:
   Worker(const RenderJob& job, const Film& film)
       : job_(job),
+        wavelengths_(job.sampling.wavelengths),
         format_(film.format()),
         tracer_(job.integrator.tracer(job.world)),
-        bundle_{.sampler = job.sampler},
+        samples_(job.sampling, format_.splatting ? nullptr : &job.filter),
+        bundle_(samples_.bundle()),
         tile_(film.format(), {}),
-        axis_(job.camera.ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f}).d) {
+        axis_(job.sampling.camera
+                  .ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f})
+                  .d) {
     if (format_.splatting) kernel_.emplace(job.filter);
     if (format_.channels.has_albedo()) bundle_.albedo_samples = kAlbedoSamples;
-    if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 
   /// Renders the samples of an item that `covered` lacks. Afterwards `tile` contains exactly these. Throws Stopped,
@@ -83,92 +73,42 @@ class Worker {
   void render(const WorkItem& item, const Coverage& covered) {
     tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
-    for (const WorkItem& piece : covered.missing(item)) {
-      render_pixels(piece.pixels, piece.samples);
-      tile_.cover(piece);
-      statistics_.paths += piece.paths();
+    for (const WorkItem& missing : covered.missing(item)) {
+      const Crop& pixels = missing.pixels;
+      for (int y = pixels.y0; y < pixels.y1; ++y)
+        for (int x = pixels.x0; x < pixels.x1; ++x) render_pixel(x, y, missing.samples);
+      tile_.cover(missing);
+      statistics_.paths += missing.paths();
     }
   }
   const FilmTile& tile() const { return tile_; }
   const RenderStatistics& statistics() const { return statistics_; }
 
  private:
-  PixelPosition place_of(int x, int y) const {
+  /// Pixel of the image that a pixel of the film represents.
+  PixelPosition image_pixel(int x, int y) const {
     const Crop& crop = format_.settings.crop;
     if (job_.pixels.empty()) return {x, y};
     return job_.pixels[size_t(y - crop.y0) * size_t(crop.width()) + size_t(x - crop.x0)];
   }
 
-  void render_pixels(const Crop& pixels, SampleRange samples) {
-    for (int y = pixels.y0; y < pixels.y1; ++y)
-      for (int x = pixels.x0; x < pixels.x1; ++x) render_pixel(x, y, samples);
-  }
-
   void render_pixel(int x, int y, SampleRange samples) {
+    const PixelPosition pixel = image_pixel(x, y);
     for (uint64_t first = samples.begin / kBundle * kBundle; first < samples.end; first += kBundle) {
       check_stop();
       const uint64_t begin = std::max(samples.begin, first), end = std::min(samples.end, first + kBundle);
-      trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
-      add(x, y, size_t(begin - first), size_t(end - first));
+      samples_.make(pixel, first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
+      tracer_->trace(bundle_);
+      add_results(x, y, size_t(begin - first), size_t(end - first));
     }
     statistics_.rays += bundle_.traced;
     tile_.add_rays(bundle_.traced);
     bundle_.traced = 0;
   }
 
-  /// Camera rays are generated for whole packets, so that the rays traced together do not depend on which samples are
-  /// wanted.
-  static uint32_t whole_packets(uint32_t wanted) {
-    constexpr uint32_t kPacket = (1u << RayPacket::kWidth) - 1;
-    uint32_t lanes = 0;
-    for (uint32_t packet = kPacket; packet < 1u << kBundle; packet <<= RayPacket::kWidth)
-      if (wanted & packet) lanes |= packet;
-    return lanes;
-  }
-
-  void trace_bundle(PixelPosition at, uint64_t first, uint32_t wanted) {
-    const Sampler& sampler = job_.sampler;
-    PathBundle& b = bundle_;
-    b.samples = {at.x, at.y, first, kBundle};
-    b.wanted = wanted;
-    b.lanes = whole_packets(wanted);
-    std::array<float, kBundle> u;
-    std::array<Vec2, kBundle> on_filter, on_lens{};
-    if (!has_fixed_wavelengths_) sampler.get1d(b.samples, uint32_t(Dimension::wavelengths), u.data());
-    if (!job_.wavelength_jitter) u.fill(0.5f);
-    sampler.get2d(b.samples, uint32_t(Dimension::film), on_filter.data());
-    if (job_.camera.uses_lens()) sampler.get2d(b.samples, uint32_t(Dimension::lens), on_lens.data());
-    if (!job_.pixel_jitter) on_lens.fill({0.5f, 0.5f});
-    std::array<float, kBundle> time{};
-    if (job_.has_motion) sampler.get1d(b.samples, uint32_t(Dimension::time), time.data());
-    std::array<Vec2, kBundle> on_film;
-    for (size_t i = 0; i < kBundle; ++i) {
-      if (!(b.lanes >> i & 1)) continue;
-      const Vec2 on = on_filter[i];
-      if (job_.pixel_jitter && !job_.camera.pixels_are_apart())
-        filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
-      else
-        filter_[i] = {{0, 0}, 1};
-      on_film[i] = {float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
-      if (!has_fixed_wavelengths_) b.lambda[i] = job_.wavelengths.sample_for_index(first + i, u[i]);
-      b.keys[i] = sample_key(job_.seed, at.x, at.y, first + i);
-    }
-    for (size_t i = 0; i < kBundle; i += RayPacket::kWidth)
-      if (b.lanes >> i & 1) job_.camera.rays(&on_film[i], &on_lens[i], RayPacket::kWidth, &b.rays[i]);
-    if (job_.has_motion) set_times(time);
-    tracer_->trace(b);
-  }
-
-  void set_times(const std::array<float, PathBundle::kMost>& time) {
-    for (size_t i = 0; i < time.size(); ++i) {
-      bundle_.rays[i].time = time[i];
-      if (job_.camera_motion && (bundle_.lanes >> i & 1)) job_.camera_motion->move(bundle_.rays[i]);
-    }
-  }
-
   Triple albedo(const FirstHit& first, const SampledWavelengths& lambda) const {
     if (format_.bands > 0) return {};
-    const Triple color = format_.color * job_.wavelengths.sensor(first.albedo, lambda).color();
+    const Triple color = format_.color * wavelengths_.sensor(first.albedo, lambda).color();
     return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
   }
 
@@ -177,17 +117,17 @@ class Worker {
   }
 
   /// Adds the results `begin` to `end - 1` of the bundle to the tile.
-  void add(int x, int y, size_t begin, size_t end) {
+  void add_results(int x, int y, size_t begin, size_t end) {
     const bool has_channels = format_.channels.means() + format_.channels.ids() > 0;
     const bool has_mattes = format_.channels.mattes() > 0;
     for (size_t i = begin; i < end; ++i) {
       const PathResult& path = bundle_.results[i];
       const SampledWavelengths& lambda = bundle_.lambda[i];
-      const auto& [offset, weight] = filter_[i];
+      const auto& [offset, weight] = samples_.position(i);
       // No radiance gives no response: the conversion is linear.
       const bool is_black = format_.bands == 0 && path.radiance.is_black();
-      ::new (&samples_[i]) FilmTile::Sample{
-          is_black ? SensorResponse(std::array<double, 3>{}) : job_.wavelengths.sensor(path.radiance, lambda),
+      ::new (&film_samples_[i]) FilmTile::Sample{
+          is_black ? SensorResponse(std::array<double, 3>{}) : wavelengths_.sensor(path.radiance, lambda),
           double(weight),
           is_leaf(path.first),
           {offset.x + 0.5f, offset.y + 0.5f}};
@@ -204,22 +144,23 @@ class Worker {
       if (path.fault.kind != PlugInFault::Kind::none) ++statistics_.faults[path.fault];
     }
     const SplatKernel* kernel = kernel_ ? &*kernel_ : nullptr;
-    tile_.add(format_, x, y, std::span(samples_).subspan(begin, end - begin), kernel);
+    tile_.add(format_, x, y, std::span(film_samples_).subspan(begin, end - begin), kernel);
     if (has_mattes) tile_.add_mattes(x, y, std::span(mattes_).subspan(begin, end - begin), kernel);
   }
 
   static constexpr uint32_t kBundle = PathBundle::kMost;
-  /// As in pbrt-v4. A denoiser takes noise of the albedo, which would be that of the colours, for structure.
+  /// As in pbrt-v4. With one sample, the path's own, the noise of the albedo would be correlated with the noise of the
+  /// colours, and a denoiser would take it for structure.
   static constexpr int kAlbedoSamples = 16;
 
   const RenderJob& job_;
+  const WavelengthStrategy& wavelengths_;
   const FilmFormat& format_;
-  const bool has_fixed_wavelengths_ = !job_.wavelengths.fixed_nm().empty();
   std::optional<SplatKernel> kernel_;  ///< set with splatting
   std::unique_ptr<Tracer> tracer_;
-  PathBundle bundle_;
-  std::array<Filter::Sample, kBundle> filter_;  ///< filter samples of the bundle
-  std::array<FilmTile::Sample, kBundle> samples_;
+  CameraSamples samples_;
+  PathBundle& bundle_;  ///< of samples_
+  std::array<FilmTile::Sample, kBundle> film_samples_;
   std::array<MatteSample, kBundle> mattes_;
   FilmTile tile_;
   Vec3 axis_;  ///< viewing direction, along which depth is measured
@@ -228,28 +169,21 @@ class Worker {
 
 }  // namespace
 
-RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler, uint64_t seed) {
+RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler) {
   return {.world = scene,
-          .camera = scene.camera(),
           .integrator = integrator,
-          .wavelengths = scene.wavelengths(),
           .filter = scene.filter(),
-          .sampler = sampler,
-          .seed = seed,
-          .pixel_jitter = scene.has_pixel_jitter(),
-          .wavelength_jitter = scene.has_wavelength_jitter(),
-          .has_motion = scene.has_motion(),
-          .camera_motion = scene.camera_motion(),
+          .sampling = scene.camera_sampling(sampler),
           .leaf_flags = scene.leaf_flags()};
 }
 
-RenderJob job_of(const Scene& scene) { return job_of(scene, scene.integrator(), scene.sampler(), scene.seed()); }
+RenderJob job_of(const Scene& scene) { return job_of(scene, scene.integrator(), scene.sampler()); }
 
 WorkPlan plan_of(const Film& film, SampleRange samples) { return {film.sampled(), samples}; }
 
 RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control) {
-  const Clock clock;
+  const RenderTimer timer;
   const StopScope stop(control.stop);
   const DeadlineScope deadline(control.deadline ? std::optional(*control.deadline + kGrace) : std::nullopt);
   const WorkItems items(plan, film);
@@ -268,7 +202,7 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
     ++done;
     if (worker->statistics().paths == 0) return;
     total += worker->statistics();
-    clock.stop(total);
+    timer.read(total);
     if (control.progress) control.progress->update(double(done) / double(items.count()), total);
   };
   try {
@@ -276,30 +210,24 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   } catch (const Stopped&) {  // the film contains all completed items, and nothing of the others
     if (!control.is_over()) throw;
   }
-  clock.stop(total);
+  timer.read(total);
   if (control.progress) control.progress->finish();
   return total;
 }
 
-int film_exponent(const RenderJob& job, const FilmSettings& settings) {
+int film_exponent(const RenderJob& job, double exposure) {
   constexpr uint64_t kPaths = 256;
   const auto tracer = job.integrator.tracer(job.world);
+  CameraSamples samples(job.sampling, nullptr);
+  PathBundle& bundle = samples.bundle();
   std::vector<double> brightest;
   for (uint64_t i = 0; i < kPaths; ++i) {
     check_stop();
-    RandomStream place(hash_key(job.seed, i));
-    const int x = int(place.uniform() * float(settings.width)), y = int(place.uniform() * float(settings.height));
     const size_t lane = i % PathBundle::kMost;
-    PathBundle bundle{.sampler = job.sampler, .samples = {x, y, i - lane, PathBundle::kMost}, .lanes = 1u << lane};
-    bundle.wanted = bundle.lanes;
-    float u;
-    job.sampler.get1d({x, y, i}, uint32_t(Dimension::wavelengths), &u);
-    bundle.lambda[lane] = job.wavelengths.sample_for_index(i, u);
-    bundle.rays[lane] = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
-    bundle.keys[lane] = sample_key(job.seed, x, y, i);
+    samples.make(job.sampling.random_pixel(i), i - lane, 1u << lane);
     tracer->trace(bundle);
-    const SensorResponse r = job.wavelengths.sensor(bundle.results[lane].radiance, bundle.lambda[lane]);
-    const double value = std::max({r[0], r[1], r[2], r[3]}) * settings.exposure;
+    const SensorResponse r = job.sampling.wavelengths.sensor(bundle.results[lane].radiance, bundle.lambda[lane]);
+    const double value = std::max({r[0], r[1], r[2], r[3]}) * exposure;
     if (value > 0 && std::isfinite(value)) brightest.push_back(value);
   }
   if (brightest.empty()) return 0;

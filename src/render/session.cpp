@@ -2,11 +2,13 @@
 
 #include <fmt/ranges.h>
 
+#include <map>
+
 #include "image/white_balance.h"
 #include "render/film/adaptive.h"
-#include "render/light_white.h"
 #include "render/parts/inputs.h"
 #include "render/plugins.h"
+#include "spectra/cie.h"
 #include "spectra/color/color_management.h"
 #include "spectra/color/color_space.h"
 
@@ -36,8 +38,29 @@ Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
   return sum;
 }
 
-/// Colour space of the image's R, G and B: that of the scene's ColorSpace directive, else that of the request, else
-/// that of the film.
+/// Returns the chromaticity of the light of a scene: the sum of its lights' spectra, weighted by their photometric
+/// power. Empty if there is no visible light. Triangles of an emitting mesh are lights of one spectrum, whose integral
+/// is computed once.
+std::optional<Chromaticity> light_white(const World& world) {
+  std::map<const Spectrum*, double> powers;
+  for (const Light* light : world.lights()) powers[&light->emission()] += light->power(world.radius());
+  double x = 0, y = 0, all = 0;
+  for (const Light* light : world.lights()) {  // in the order of the scene: sums have the same bits each time
+    const auto found = powers.find(&light->emission());
+    if (found == powers.end()) continue;
+    const Triple xyz = to_xyz(*found->first);
+    if (xyz[1] > 0) {
+      const double weight = found->second / xyz[1];
+      x += weight * xyz[0], y += weight * xyz[1], all += weight * (xyz[0] + xyz[1] + xyz[2]);
+    }
+    powers.erase(found);
+  }
+  if (!(y > 0) || !(all > 0)) return {};
+  return Chromaticity{x / all, y / all};
+}
+
+/// Colour space of the image's R, G and B: the scene's ColorSpace directive, else the request's colour space, else the
+/// film's.
 std::string space_of(const SceneSettings& description, const ImageRequest& request, std::string_view film_space) {
   if (film_space.empty()) return {};
   std::string space = request.color_space;
@@ -194,31 +217,32 @@ FilmSettings Session::film(const SceneSettings& description) const {
   return Scene::film_settings(description, registry_);
 }
 
-std::string spelled(const MaterialDescription& material) {
+std::string name_in_messages(const MaterialDescription& material) {
   return material.name.empty() ? fmt::format("material \"{}\"", material.plugin.name)
                                : fmt::format("material \"{}\" ({})", material.name, material.plugin.name);
 }
 
-/// Calls `act`. An exception of a plug-in becomes an InputError that names the material at the hit where it was thrown,
-/// if there is one, and the shared objects that are loaded.
-template <class Act>
-auto Session::naming_plugins(const std::vector<MaterialDescription>& materials, const Act& act) const {
+void Session::rethrow_naming_material(const std::vector<MaterialDescription>& materials) const {
   try {
     try {
-      return act();
+      throw;
     } catch (const SurfaceError& error) {
       const MaterialDescription& material = materials.at(error.material_id);
-      fail(material.plugin.where, "{}, or a light or texture at its surface, has a defect: {}{}", spelled(material),
-           error.what(), loaded_from(options_.plugins));
+      fail(material.plugin.where, "{}, or a light or texture at its surface, has a defect: {}{}",
+           name_in_messages(material), error.what(), loaded_from(options_.plugins));
     }
   } catch (...) {
-    rethrow_naming(options_.plugins);
+    rethrow_naming_plugins(options_.plugins);
   }
 }
 
 LoadedScene Session::load(SceneDescription description, const ImageRequest& request, const Scene* other) {
   const std::vector<MaterialDescription> materials = description.materials;
-  return naming_plugins(materials, [&] { return load_scene(std::move(description), request, other); });
+  try {
+    return load_scene(std::move(description), request, other);
+  } catch (...) {
+    rethrow_naming_material(materials);
+  }
 }
 
 LoadedScene Session::load_scene(SceneDescription description, const ImageRequest& request, const Scene* other) {
@@ -260,20 +284,20 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
     format.color = matrix_of(wavelengths.film_space(), loaded.image_format_.space);
     format.white = white_of(wavelengths, format.color);
   }
-  format.exponent = film_exponent(loaded.job(), film);
+  format.exponent = film_exponent(loaded.job(), film.exposure);
   return loaded;
 }
 
 namespace {
 
-/// Warns of values that cannot be, and names the plug-in that returned them.
-void warn_of(const PlugInFault& fault, uint64_t count, const LoadedScene& loaded, const Log& log) {
+/// Warns of impossible values, and names the plug-in that returned them.
+void warn_about_fault(const PlugInFault& fault, uint64_t count, const LoadedScene& loaded, const Log& log) {
   constexpr const char* kWhat =
       "{} returned values that are negative, infinite or not a number on {} path{}: they count as black";
   const char* plural = count == 1 ? "" : "s";
   if (fault.kind == PlugInFault::Kind::material) {
     const MaterialDescription& material = loaded.description().materials[fault.index];
-    log.warn(material.plugin.where, fmt::format(kWhat, spelled(material), count, plural));
+    log.warn(material.plugin.where, fmt::format(kWhat, name_in_messages(material), count, plural));
   } else {
     log.warn(loaded.scene().light_where(fault.index), fmt::format(kWhat, "this light", count, plural));
   }
@@ -288,9 +312,13 @@ RenderStatistics Session::render(const LoadedScene& scene, SampleRange samples, 
 
 RenderStatistics Session::render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
                                       const RenderControl& control) {
-  const RenderStatistics statistics = naming_plugins(
-      scene.description().materials, [&] { return frond::render(scene.job(), plan, part.film, pool_, control); });
-  for (const auto& [fault, count] : statistics.faults) warn_of(fault, count, scene, log_);
+  RenderStatistics statistics;
+  try {
+    statistics = frond::render(scene.job(), plan, part.film, pool_, control);
+  } catch (...) {
+    rethrow_naming_material(scene.description().materials);
+  }
+  for (const auto& [fault, count] : statistics.faults) warn_about_fault(fault, count, scene, log_);
   part.header.statistics += statistics;
   return statistics;
 }

@@ -76,7 +76,7 @@ struct SessionOptions {
 };
 
 /// Returns a material as messages name it.
-std::string spelled(const MaterialDescription& material);
+std::string name_in_messages(const MaterialDescription& material);
 
 /// Plug-ins, threads, cache and log that renders share. It is the entry point of the library for programs that render:
 ///
@@ -133,8 +133,9 @@ class Session {
                              const RenderControl& control = {});
 
  private:
-  template <class Act>
-  auto naming_plugins(const std::vector<MaterialDescription>& materials, const Act& act) const;
+  /// For a handler: rethrows the current exception. That of a plug-in becomes an InputError that names the material at
+  /// the hit where it was thrown, if there is one, and the shared objects that are loaded.
+  [[noreturn]] void rethrow_naming_material(const std::vector<MaterialDescription>& materials) const;
   LoadedScene load_scene(SceneDescription description, const ImageRequest& request, const Scene* other);
 
   const Log& log_;

@@ -3,12 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/camera_samples.h"
 #include "textures/normal_map.h"
 
 namespace frond {
 
 Scene::Scene() = default;
 Scene::~Scene() = default;
+
+CameraSampling Scene::camera_sampling() const { return camera_sampling(*sampler_); }
+
+CameraSampling Scene::camera_sampling(const Sampler& sampler) const {
+  return {.camera = *camera_,
+          .wavelengths = *wavelengths_,
+          .sampler = sampler,
+          .width = film_.width,
+          .height = film_.height,
+          .pixel_jitter = has_pixel_jitter_,
+          .wavelength_jitter = has_wavelength_jitter_,
+          .has_motion = has_motion(),
+          .camera_motion = camera_motion_ ? &*camera_motion_ : nullptr};
+}
 
 bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   GeometryHit at;

@@ -16,6 +16,8 @@
 
 namespace frond {
 
+struct CameraSampling;
+
 /// Returns the wavelength strategy of the description's options, with its parameters. Throws InputError.
 ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry& registry);
 
@@ -86,11 +88,12 @@ class Scene final : public World {
   const std::string& wavelengths_name() const { return wavelengths_name_; }
   const FilmSettings& film() const { return film_; }
   const Camera& camera() const { return *camera_; }
-  /// Motion to be applied to the camera's rays; nullptr: the camera stands still.
-  const CameraMotion* camera_motion() const { return camera_motion_ ? &*camera_motion_ : nullptr; }
   /// Whether anything moves while the shutter is open: rays need a time.
   bool has_motion() const { return camera_motion_.has_value() || geometry_->has_motion(); }
   const Sampler& sampler() const { return *sampler_; }
+  /// Arguments of CameraSamples, with the scene's sampler or another one; they refer to the scene.
+  CameraSampling camera_sampling() const;
+  CameraSampling camera_sampling(const Sampler& sampler) const;
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
   const Geometry& geometry() const { return *geometry_; }
@@ -105,8 +108,6 @@ class Scene final : public World {
   int samples_per_pixel() const { return samples_per_pixel_; }
   /// If false, all samples are at the centres of pixels and lens.
   bool has_pixel_jitter() const { return has_pixel_jitter_; }
-  /// If false, all samples have the same wavelengths.
-  bool has_wavelength_jitter() const { return has_wavelength_jitter_; }
   /// Seed of all random numbers.
   uint64_t seed() const { return sampler_->seed(); }
 

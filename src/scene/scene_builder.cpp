@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/camera_samples.h"
 #include "core/log.h"
 #include "core/messages/problems.h"
 #include "core/stop.h"
@@ -9,7 +10,6 @@
 #include "scene/geometry_builder.h"
 #include "scene/leaf_models.h"
 #include "scene/origin.h"
-#include "scene/pilot_rays.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "spectra/check_range.h"
@@ -155,7 +155,7 @@ class SceneBuilder {
     check_rays(b);
     build_tiling();
     scene_.integrator_->prepare(scene_);
-    if (const std::string adapted = scene_.integrator_->adapt(scene_, ScenePilotRays(scene_)); !adapted.empty())
+    if (const std::string adapted = scene_.integrator_->adapt(scene_, scene_.camera_sampling()); !adapted.empty())
       log_.info(adapted);
   }
 

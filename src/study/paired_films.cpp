@@ -12,17 +12,10 @@ std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Re
                       [&] { return info.make(Params(info, description.sampler, resolver), seed); });
 }
 
-int film_exponent(const Scene& scene) {
-  return film_exponent(
-      {scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed()},
-      scene.film());
-}
-
 PairedFilms::PairedFilms(const FilmSettings& film, int exponent, std::array<uint64_t, 2> seeds,
                          const SceneSettings& description, const Registry& registry, const Scene& scene,
                          std::vector<PixelPosition> pixels)
-    : seeds_(seeds),
-      samplers_{make_sampler(description, registry, scene.wavelengths(), seeds[0]),
+    : samplers_{make_sampler(description, registry, scene.wavelengths(), seeds[0]),
                 make_sampler(description, registry, scene.wavelengths(), seeds[1])},
       pixels_(std::move(pixels)),
       films_{Film({film}), Film({film})} {
@@ -31,7 +24,7 @@ PairedFilms::PairedFilms(const FilmSettings& film, int exponent, std::array<uint
 }
 
 RenderJob PairedFilms::job(size_t half, const Scene& scene) const {
-  RenderJob job = job_of(scene, scene.integrator(), *samplers_[half], seeds_[half]);
+  RenderJob job = job_of(scene, scene.integrator(), *samplers_[half]);
   job.pixels = pixels_;
   return job;
 }

@@ -16,9 +16,6 @@ struct RenderCost {
 std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Registry& registry,
                                       const WavelengthStrategy& wavelengths, uint64_t seed);
 
-/// Returns the unit of a scene's films (FilmFormat), as an exponent of 2.
-int film_exponent(const Scene& scene);
-
 /// Two independent renders of one image, which separate noise from bias. They can be continued; the sums are then
 /// exactly those of an uninterrupted render.
 class PairedFilms {
@@ -40,7 +37,6 @@ class PairedFilms {
  private:
   RenderJob job(size_t half, const Scene& scene) const;
 
-  std::array<uint64_t, 2> seeds_;
   std::array<std::unique_ptr<Sampler>, 2> samplers_;
   std::vector<PixelPosition> pixels_;
   std::array<Film, 2> films_;

@@ -41,7 +41,7 @@ const Layers kAllowed{
     {"exports", {"core", "system", "spectra", "leaf", "image", "scene", "instruments"}},
     {"imports", {"core", "system", "image", "scene"}},
     {"assimp", {"imports"}},
-    {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
+    {"radiometry", {"core", "system", "spectra", "scene", "integrators", "instruments", "render"}},
     {"report", {"core", "system", "spectra", "leaf", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
     {"jobs",

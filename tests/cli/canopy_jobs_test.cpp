@@ -3,8 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command.h"
-#include "tests/support/input_error.h"
+#include "tests/support/command_test.h"
 
 /// The jobs canopy and structure as commands; tests/scene and tests/radiometry test what they compute.
 namespace frond {
@@ -12,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class CanopyJobs : public ::testing::Test {
+class CanopyJobs : public CommandTest {
  protected:
   Outcome canopy(std::vector<std::string> words) const {
     words.insert(words.begin(), {"canopy", "-o", folder_.name_of("leaves.npy")});
@@ -36,8 +35,6 @@ class CanopyJobs : public ::testing::Test {
     words.insert(words.begin(), {"structure", scene.string(), "--rays", "4096"});
     return frond_command(words);
   }
-
-  TestFolder folder_{"canopy_jobs"};
 };
 
 TEST_F(CanopyJobs, TheLogStatesTheAngles) {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "jobs/record/job.h"
-#include "render/material_words.h"
+#include "render/measured_material.h"
 #include "tests/cli/table.h"
 #include "tests/support/command_test.h"
 

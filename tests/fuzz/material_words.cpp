@@ -1,8 +1,7 @@
 // Materials of the command line: abm,specimen=maize, and *=leaf,specimen=maize.
 
-#include "render/material_words.h"
-
 #include "jobs/record/common_params.h"
+#include "render/measured_material.h"
 #include "render/plugins.h"
 #include "scene/resolver.h"
 #include "scene/scene.h"

@@ -27,7 +27,7 @@ static std::string part_of(std::string_view header, std::string_view sums) {
 static void check(const RenderPart& part) {
   const Crop& crop = part.film.settings().crop;
   fuzz::require(crop.width() > 0 && crop.height() > 0, "a film has pixels");
-  sample_count(part.film), what_is_missing(part), lacks_neighbors(part.film);
+  sample_count(part.film), missing_samples_text(part), lacks_neighboring_samples(part.film);
   film_image(part.film, part.header.image);
   finished_image(part);
 }

@@ -347,13 +347,13 @@ TEST_F(Radiometry, TheVerdictKnowsWhatIsWithinTheLimit) {
       .views = {{-40, 0}, {0, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=550,800"};
   const BrfMeasurement reference = brf(kSun + soil(0.3), request, 64), brighter = brf(kSun + soil(0.309), request, 64),
                        little = brf(kSun + soil(0.303), request, 64);
-  EXPECT_EQ(judge(reference, reference, 0.02).answer, Answer::enough);
-  EXPECT_EQ(judge(reference, brighter, 0.02).answer, Answer::not_enough);
-  EXPECT_EQ(judge(reference, little, 0.02).answer, Answer::enough);
-  EXPECT_NEAR(judge(reference, little, 0.02).worst.mean, 0.01, 1e-5);
+  EXPECT_EQ(check_agreement(reference, reference, 0.02).answer, Answer::enough);
+  EXPECT_EQ(check_agreement(reference, brighter, 0.02).answer, Answer::not_enough);
+  EXPECT_EQ(check_agreement(reference, little, 0.02).answer, Answer::enough);
+  EXPECT_NEAR(check_agreement(reference, little, 0.02).worst.mean, 0.01, 1e-5);
   const BrfMeasurement few = brf(kSun + soil(0.3) + canopy(1, lambertian(0.4, 0.4)), request, 2),
                        other = brf(kSun + soil(0.3) + canopy(1, lambertian(0.41, 0.4)), request, 2);
-  EXPECT_EQ(judge(few, other, 0.02).answer, Answer::unknown);
+  EXPECT_EQ(check_agreement(few, other, 0.02).answer, Answer::unknown);
 }
 
 TEST_F(Radiometry, WalksThatAreFollowedFromTheSensorAreNotJudged) {
@@ -363,7 +363,7 @@ TEST_F(Radiometry, WalksThatAreFollowedFromTheSensorAreNotJudged) {
   };
   EXPECT_TRUE(read("abm").has_heavy_tails);
   EXPECT_FALSE(read("leaf_solved").has_heavy_tails);
-  EXPECT_EQ(judge(read("leaf_solved"), read("abm"), 0.5).answer, BrfVerdict::Answer::unknown);
+  EXPECT_EQ(check_agreement(read("leaf_solved"), read("abm"), 0.5).answer, BrfVerdict::Answer::unknown);
 }
 
 /// With this seed one of the directions lies in the plane of the horizon.

@@ -267,12 +267,15 @@ TEST(Photons, AreTheIntegralOfTheIrradianceAtAnyStepOfTheBands) {
   const TabulatedSpectrum lamp(points);
   EXPECT_NEAR(photons(of_sun), 1977.9, 0.2);
   for (const double step : {1., 10., 20., 25., 50.}) {
-    EXPECT_NEAR(PhotonWeights::of(bands_at(step), *solar)->incident, photons(of_sun), 1e-5 * photons(of_sun)) << step;
-    EXPECT_NEAR(PhotonWeights::of(bands_at(step), lamp)->incident, photons(kLamp), 1e-4 * photons(kLamp)) << step;
+    EXPECT_NEAR(PhotonWeights::from_irradiance(bands_at(step), *solar)->incident, photons(of_sun),
+                1e-5 * photons(of_sun))
+        << step;
+    EXPECT_NEAR(PhotonWeights::from_irradiance(bands_at(step), lamp)->incident, photons(kLamp), 1e-4 * photons(kLamp))
+        << step;
   }
   // Bands may begin and end 10 nm inside, or reach beyond.
-  EXPECT_NEAR(PhotonWeights::of(bands_at(20, 410, 690), *solar)->incident, photons(of_sun), 0.02);
-  EXPECT_NEAR(PhotonWeights::of(bands_at(20, 390, 710), *solar)->incident, photons(of_sun), 0.02);
+  EXPECT_NEAR(PhotonWeights::from_irradiance(bands_at(20, 410, 690), *solar)->incident, photons(of_sun), 0.02);
+  EXPECT_NEAR(PhotonWeights::from_irradiance(bands_at(20, 390, 710), *solar)->incident, photons(of_sun), 0.02);
 }
 
 /// Shares that are linear in wavelength are interpolated without an error, whatever the lines of the lamp.
@@ -286,7 +289,7 @@ TEST(Photons, WeightSharesAsLinearBetweenTheBands) {
   for (const double step : {1., 20., 50.}) {
     std::vector<Band> bands = bands_at(step);
     std::ranges::reverse(bands);  // in any order
-    const auto weights = PhotonWeights::of(bands, lamp)->weights;
+    const auto weights = PhotonWeights::from_irradiance(bands, lamp)->weights;
     double mean = 0, sum = 0;
     for (size_t b = 0; b < bands.size(); ++b) mean += weights[b] * share_at(bands[b].nm), sum += weights[b];
     EXPECT_NEAR(sum, 1, 1e-12);
@@ -296,13 +299,13 @@ TEST(Photons, WeightSharesAsLinearBetweenTheBands) {
 
 TEST(Photons, NeedBandsAndLightFrom400To700) {
   const SpectrumPtr solar = named_spectrum("solar-am1.5-global", {});
-  EXPECT_FALSE(PhotonWeights::of(bands_at(60), *solar));
-  EXPECT_FALSE(PhotonWeights::of(bands_at(20, 420, 700), *solar));
-  EXPECT_FALSE(PhotonWeights::of(std::vector<Band>{{550, {{400, 1}, {700, 1}}, "par"}}, *solar));
+  EXPECT_FALSE(PhotonWeights::from_irradiance(bands_at(60), *solar));
+  EXPECT_FALSE(PhotonWeights::from_irradiance(bands_at(20, 420, 700), *solar));
+  EXPECT_FALSE(PhotonWeights::from_irradiance(std::vector<Band>{{550, {{400, 1}, {700, 1}}, "par"}}, *solar));
   const std::vector<SpectrumPoint> blue{{400, 1}, {500, 1}}, ending{{400, 1}, {500, 1}, {501, 0}};
-  EXPECT_THAT(error_of([&] { PhotonWeights::of(bands_at(20), TabulatedSpectrum(blue)); }),
+  EXPECT_THAT(error_of([&] { PhotonWeights::from_irradiance(bands_at(20), TabulatedSpectrum(blue)); }),
               HasSubstr("known from 400 to 500 nm, photons need 400 to 700 nm"));
-  EXPECT_GT(PhotonWeights::of(bands_at(20), TabulatedSpectrum(ending))->incident, 0);
+  EXPECT_GT(PhotonWeights::from_irradiance(bands_at(20), TabulatedSpectrum(ending))->incident, 0);
 }
 
 /// The light of the scene is integrated over its own points too.

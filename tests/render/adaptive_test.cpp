@@ -133,7 +133,7 @@ TEST_F(Adaptive, NoiseComesDownToWhatIsAskedFor) {
     const RenderPart part = to_noise(scene, max_rms);
     EXPECT_LE(image_noise(part.film, noise_z(part.header.round + 1)).upper_rms(), max_rms);
     EXPECT_LE(std::sqrt(square_difference(part.film, reference.film)), max_rms);
-    EXPECT_EQ(what_is_missing(part), "");
+    EXPECT_EQ(missing_samples_text(part), "");
     EXPECT_GE(part.header.statistics.paths, before);
     before = part.header.statistics.paths;
   }
@@ -259,10 +259,10 @@ TEST_F(Adaptive, MergedPiecesGoOn) {
       write_part(files.back(), part.header, part.film);
     }
     RenderPart merged = merge_parts(files);
-    EXPECT_EQ(what_is_missing(merged), x == 16 ? "" : "samples 20:32 of pixels 10,16,0,16");
+    EXPECT_EQ(missing_samples_text(merged), x == 16 ? "" : "samples 20:32 of pixels 10,16,0,16");
     EXPECT_EQ(merged.film.half_variance(4, 12) == merged.film.variance(4, 12), x == 10);
     session_.render_to(load(true), {.max_rms = 0.02}, merged);
-    EXPECT_EQ(what_is_missing(merged), "");
+    EXPECT_EQ(missing_samples_text(merged), "");
     EXPECT_LE(image_noise(merged.film, noise_z(merged.header.round + 1)).upper_rms(), 0.02);
     for (size_t i = 0; i < merged.film.tiles(); ++i) {
       EXPECT_EQ(samples_of(merged.film.tile(i)).least, samples_of(merged.film.tile(i)).most);

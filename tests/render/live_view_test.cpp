@@ -157,7 +157,7 @@ LightSource "infinite" "spectrum L" [300 1 2500 1]
   bool is_last = false;
   do {
     is_last = is_over;
-    ASSERT_TRUE(renew_image(part.film, part.header.image, {}, image));
+    ASSERT_TRUE(update_image(part.film, part.header.image, {}, image));
     for (size_t i = 0; i < image.pixels.size(); i += 3)
       if (const float red = image.pixels[i]; red != 0) least = std::min(least, red), most = std::max(most, red);
   } while (!is_last);

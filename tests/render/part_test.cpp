@@ -114,7 +114,7 @@ TEST_F(Parts, PiecesOfTheImageAddUpToTheWhole) {
       const RenderPart merged = merge_parts(files);
       EXPECT_EQ(merged.film, whole.film) << c.name;
       EXPECT_EQ(image_of(merged), image_of(whole)) << c.name;
-      EXPECT_EQ(what_is_missing(merged), "");
+      EXPECT_EQ(missing_samples_text(merged), "");
     }
   }
 }
@@ -169,7 +169,7 @@ TEST_F(Parts, HolesAreNamed) {
   const auto missing = [this](const std::vector<RenderPart>& parts) {
     std::vector<fs::path> files;
     for (const RenderPart& p : parts) files.push_back(write(p, fmt::format("{}.part", files.size())));
-    return what_is_missing(merge_parts(files));
+    return missing_samples_text(merge_parts(files));
   };
   std::vector<RenderPart> parts;
   parts.push_back(part({0, 4}));

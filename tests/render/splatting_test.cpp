@@ -396,9 +396,9 @@ TEST_F(SplattingRenders, PiecesOfAScenesCropAddUpToIt) {
   }
   const RenderPart merged = merge_parts(files);
   EXPECT_EQ(merged.film, whole.film);
-  EXPECT_EQ(what_is_missing(merged), "");
-  EXPECT_FALSE(lacks_neighbors(merged.film));
-  EXPECT_TRUE(lacks_neighbors(merge_parts({files[1], files[2]}).film));
+  EXPECT_EQ(missing_samples_text(merged), "");
+  EXPECT_FALSE(lacks_neighboring_samples(merged.film));
+  EXPECT_TRUE(lacks_neighboring_samples(merge_parts({files[1], files[2]}).film));
 }
 
 /// Both reconstructions have the same blur: their images have the same mean, and differ by little more than noise.

@@ -40,7 +40,8 @@ double variance(const std::string& options) {
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());
   ThreadPool pool(1);
   const Scene scene(description, registry, pool, silent_log());
-  PairedFilms films(scene.film(), film_exponent(scene), {1, 2}, description, registry, scene);
+  PairedFilms films(scene.film(), film_exponent(job_of(scene), scene.film().exposure), {1, 2}, description, registry,
+                    scene);
   films.advance_to(16, scene, pool, nullptr);
   double sum = 0;
   for (int y = 0; y < kSize; ++y)

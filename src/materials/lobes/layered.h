@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/phase.h"
 #include "materials/lobes/conductor.h"
 #include "materials/lobes/dielectric.h"
 
@@ -17,27 +18,6 @@ struct LayerWalks {
   int max_depth;  ///< events below the coat, without the exit
   int samples;    ///< walks per call of f
 };
-
-namespace detail {
-
-/// Henyey and Greenstein's phase function, 1/sr; `cosine`: between the directions of travel before and after.
-inline float henyey_greenstein(float cosine, float g) {
-  const float square = 1 + g * g - 2 * g * cosine;
-  return 0.25f * kInvPi * (1 - g * g) / (square * std::sqrt(square));
-}
-
-/// Draws a direction of travel after scattering, given that before.
-inline Vec3 sample_henyey_greenstein(const Vec3& w, float g, Vec2 u) {
-  float cosine = 1 - 2 * u.x;
-  if (std::abs(g) > 1e-3f) {
-    const float x = (1 - g * g) / (1 + g - 2 * g * u.x);
-    cosine = std::clamp((1 + g * g - x * x) / (2 * g), -1.f, 1.f);
-  }
-  const float sine = std::sqrt(std::max(0.f, 1 - cosine * cosine)), phi = 2 * kPi * u.y;
-  return Frame::around(w).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
-}
-
-}  // namespace detail
 
 /// Base of a LayeredBsdf: a Lambertian surface.
 class DiffuseBase {
@@ -244,7 +224,7 @@ class LayeredBsdf final : public Bsdf {
   /// direction can hit: first down to the base, or first up to the coat. At most `events` further events.
   SampledSpectrum specular_connection(const Mirrors& between, const Walk& at, const Vec3& up, int events) const {
     constexpr float kNegligible = 1e-7f;
-    const auto scattered = [&](const Vec3& w) { return detail::henyey_greenstein(dot(at.w, w), medium_.g); };
+    const auto scattered = [&](const Vec3& w) { return henyey_greenstein(dot(at.w, w), medium_.g); };
     SampledSpectrum first_down = between.base * (scattered({up.x, up.y, -up.z}) * transmittance(at.z, up));
     SampledSpectrum first_up = between.both * (scattered(up) * transmittance(medium_.thickness - at.z, up));
     SampledSpectrum sum;
@@ -290,14 +270,14 @@ class LayeredBsdf final : public Bsdf {
     for (int depth = 0; depth < walks_.max_depth && survives_roulette(at, depth, rng); ++depth) {
       if (is_grazing(at.w)) break;
       if (advance(at, rng)) {
-        const float p = detail::henyey_greenstein(dot(at.w, up), medium_.g);
+        const float p = henyey_greenstein(dot(at.w, up), medium_.g);
         sum += at.weight * (p * against(p) * transmittance(medium_.thickness - at.z, up) * out_weight / up.z);
         if (mirrors)
           sum += at.weight * specular_connection(between, at, up, walks_.max_depth - 1 - depth) * (out_weight / up.z);
         const Vec3 before = at.w;
-        at.w = detail::sample_henyey_greenstein(before, medium_.g, uniform_pair(rng));
+        at.w = sample_henyey_greenstein(before, medium_.g, uniform_pair(rng));
         if (is_grazing(at.w)) break;
-        sum += escaped(at, detail::henyey_greenstein(dot(before, at.w), medium_.g), false);
+        sum += escaped(at, henyey_greenstein(dot(before, at.w), medium_.g), false);
       } else if (at.w.z > 0) {
         const auto back = border.reflect(-at.w, border.facet(-at.w, uniform_pair(rng)));
         if (!back) break;
@@ -339,7 +319,7 @@ class LayeredBsdf final : public Bsdf {
       const bool may_go_on = depth < walks_.max_depth;
       if (advance(at, rng)) {
         if (!may_go_on) return {};
-        at.w = detail::sample_henyey_greenstein(at.w, medium_.g, uniform_pair(rng));
+        at.w = sample_henyey_greenstein(at.w, medium_.g, uniform_pair(rng));
         is_delta = false;
       } else if (at.w.z > 0) {
         const Vec3 inner = border.facet(-at.w, uniform_pair(rng));

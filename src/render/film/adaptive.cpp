@@ -10,7 +10,7 @@ namespace frond {
 namespace {
 
 /// Variance of colours in the given units, averaged over them.
-double averaged(const Triple& variance, const NoiseUnit& unit) {
+double mean_over_colors(const Triple& variance, const NoiseUnit& unit) {
   double sum = 0;
   for (size_t c = 0; c < 3; ++c) sum += variance[c] / (unit[c] * unit[c]);
   return sum / 3;
@@ -18,7 +18,7 @@ double averaged(const Triple& variance, const NoiseUnit& unit) {
 
 double pixels_of(const Crop& c) { return double(c.width()) * double(c.height()); }
 
-/// The next power of 2 of which each further one is a doubling, `most` at most.
+/// Number of samples after `doublings` doublings, at most `most`. The first one only rounds up to the next power of 2.
 double doubled(double samples, double doublings, uint64_t most) {
   if (doublings == 0) return samples;
   return std::max(samples,
@@ -43,8 +43,8 @@ TileNoise noise_of(const Film& film, size_t i, const NoiseUnit& unit) {
   const Crop inside = intersection(tile.pixels(), film.settings().crop);
   for (int y = inside.y0; y < inside.y1; ++y)
     for (int x = inside.x0; x < inside.x1; ++x, ++t.inside) {
-      t.noise += averaged(film.half_variance(x, y), unit);
-      t.between += averaged(film.variance(x, y), unit);
+      t.noise += mean_over_colors(film.half_variance(x, y), unit);
+      t.between += mean_over_colors(film.variance(x, y), unit);
     }
   return t;
 }
@@ -103,7 +103,7 @@ NoiseEstimate image_noise(const Film& film, double z, const NoiseUnit& unit) {
   double sum = 0, squares = 0;
   for (int y = c.y0; y < c.y1; ++y)
     for (int x = c.x0; x < c.x1; ++x) {
-      const double noise = averaged(film.half_variance(x, y), unit);
+      const double noise = mean_over_colors(film.half_variance(x, y), unit);
       sum += noise, squares += noise * noise;
     }
   const double pixels = pixels_of(c), alike = film.format().splatting ? film.format().splatting->correlated_pixels : 1;

@@ -13,7 +13,7 @@ namespace frond {
 
 // Cryptomatte, specification 1.2.0 (Friedman and Jones, Psyop, 2015): https://github.com/Psyop/Cryptomatte
 
-/// Names of what a MatteKey stands for.
+/// Names of the surfaces, or groups of surfaces, of MatteKeys.
 struct MatteNames {
   std::vector<std::string> materials = {};  ///< by index
   /// Names of objects, each with the first number of the instances that have it, ascending.

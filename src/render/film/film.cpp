@@ -86,17 +86,17 @@ Film::Hold Film::hold(const Crop& pixels) const {
 
 template <class Each>
 void Film::for_each_reaching_tile(int x, int y, const Each& each) const {
-  const Crop pixels = format_.splatting->reaching({x, y, x + 1, y + 1});
+  const Crop pixel{x, y, x + 1, y + 1}, pixels = format_.splatting ? format_.splatting->reaching(pixel) : pixel;
   for (int row = floor_to_tile(pixels.y0); row <= floor_to_tile(pixels.y1 - 1); ++row)
-    for (int column = floor_to_tile(pixels.x0); column <= floor_to_tile(pixels.x1 - 1); ++column)
-      each(tiles_[size_t(row - first_row_) * size_t(columns_) + size_t(column - first_column_)]);
+    for (int column = floor_to_tile(pixels.x0); column <= floor_to_tile(pixels.x1 - 1); ++column) {
+      const FilmTile& tile = tiles_[size_t(row - first_row_) * size_t(columns_) + size_t(column - first_column_)];
+      if (const double samples = tile.samples_per_pixel(); samples > 0) each(tile, samples);
+    }
 }
 
 template <class Each>
 void Film::for_each_reaching_pixel(int x, int y, const Each& each) const {
-  for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
-    const double samples = tile.samples_per_pixel();
-    if (samples == 0) return;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile, double samples) {
     const Crop all = format_.splatting->reaching({x, y, x + 1, y + 1}), &own = tile.pixels();
     for (int py = std::max(all.y0, own.y0); py < std::min(all.y1, own.y1); ++py)
       for (int px = std::max(all.x0, own.x0); px < std::min(all.x1, own.x1); ++px) each(tile, px, py, samples);
@@ -105,9 +105,7 @@ void Film::for_each_reaching_pixel(int x, int y, const Each& each) const {
 
 Film::Gathered Film::gathered(int x, int y) const {
   Gathered all;
-  for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
-    const double samples = tile.samples_per_pixel();
-    if (samples == 0) return;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile, double samples) {
     const FilmTile::WeightedSums& splat = tile.splat(x, y);
     for (size_t c = 0; c < 3; ++c) all.sum[c] += splat.sum[c].value() / samples;
     all.weight += double(splat.weight) / FilmTile::kWeightsOfOne / samples;
@@ -119,9 +117,7 @@ Film::Gathered Film::gathered(int x, int y) const {
 
 Film::Gathered Film::gathered(int x, int y, size_t band) const {
   Gathered all;
-  for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
-    const double samples = tile.samples_per_pixel();
-    if (samples == 0) return;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile, double samples) {
     const FilmTile::BandSplat& splat = tile.band_splat(x, y, band);
     all.sum[0] += splat.sum.value() / samples;
     all.weight += double(splat.weight) / FilmTile::kWeightsOfOne / samples;
@@ -231,16 +227,11 @@ Triple Film::half_variance(int x, int y) const {
   bool is_known = true;
   Triple v{};
   const Gathered all = format_.splatting ? gathered(x, y) : own(x, y);
-  const auto add = [&](const FilmTile& tile) {
-    if (tile.samples_per_pixel() == 0) return;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile, double) {
     is_known &= tile.has_second_half();
     const Triple by_tile = half_variance_by(tile, x, y, all);
     for (size_t c = 0; c < 3; ++c) v[c] += by_tile[c];
-  };
-  if (format_.splatting)
-    for_each_reaching_tile(x, y, add);
-  else
-    add(tiles_[tile_at(x, y)]);
+  });
   return is_known ? v : variance(x, y);
 }
 
@@ -306,18 +297,12 @@ Film::FeatureMeans Film::features(int x, int y) const {
 std::vector<Matte> Film::mattes(int x, int y, size_t list) const {
   std::map<MatteKey, double> weights;
   double all = 0;
-  const auto add = [&](const FilmTile& tile) {
-    const double samples = tile.samples_per_pixel();
-    if (samples == 0) return;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile, double samples) {
     for (const MatteList::Entry& e : tile.mattes(x, y, list).entries()) {
       weights[e.key] += double(e.weight) / samples;
       all += double(e.weight) / samples;
     }
-  };
-  if (format_.splatting)
-    for_each_reaching_tile(x, y, add);
-  else
-    add(tiles_[tile_at(x, y)]);
+  });
   std::vector<Matte> mattes;
   for (const auto& [key, weight] : weights)  // a filter with negative weights can make a coverage negative, or above 1
     if (key != 0 && weight > 0 && all > 0) mattes.push_back({key, std::min(weight / all, 1.0)});

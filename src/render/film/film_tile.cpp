@@ -24,7 +24,8 @@ bool is_within(const Double4& v, double bound) {
 /// Largest number of samples in an exact sum of doubles.
 constexpr size_t kAtOnce = SplatSums::kMost;
 
-double held(double value) {
+/// The nearest value that an ExactSum<40> can add; 0 for NaN and infinity.
+double finite_term(double value) {
   constexpr double kMost = ExactSum<40>::kLargestTerm;
   return std::isfinite(value) ? std::clamp(value, -kMost, kMost) : 0;
 }
@@ -229,7 +230,8 @@ void FilmTile::for_each_reached(int x, int y, const Each& each) {
       each(reached_index(px, py), size_t(px - left), size_t(py - top));
 }
 
-/// Adds the samples of each exponent together; black ones with those of the first. Sums are exact in any order.
+/// Adds the samples of each exponent together, and black samples together with the first exponent's. Sums are exact in
+/// any order.
 void FilmTile::add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples) {
   SplatSums sums(&kernel);
   for (auto begin = samples.begin(); begin != samples.end();) {
@@ -269,7 +271,7 @@ void FilmTile::add(int x, int y, const Features& f) {
   const size_t at = index(x, y);
   Hits& hits = hits_[at];
   ++hits.count;
-  for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i].add(held(f.means[i]));
+  for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i].add(finite_term(f.means[i]));
   if (std::pair(double(f.from_center), f.sample) < std::pair(hits.nearest_distance, hits.nearest_sample)) {
     hits.nearest_distance = double(f.from_center), hits.nearest_sample = f.sample;
     std::copy_n(f.ids.begin(), id_count_, ids_.data() + at * id_count_);

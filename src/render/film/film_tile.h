@@ -112,7 +112,7 @@ class FilmTile {
            const SplatKernel* kernel = nullptr);
   /// Adds the values of additional channels for one sample.
   void add(int x, int y, const Features& features);
-  /// Adds what the samples of a pixel hit, to the lists of mattes. `kernel` as for samples.
+  /// Adds the surfaces that the samples of a pixel hit to the lists of mattes. `kernel` as for samples.
   void add_mattes(int x, int y, std::span<const MatteSample> samples, const SplatKernel* kernel);
   /// For a film with `halves`: makes the present sums those of the first half; the next samples are the second half,
   /// which need not have as many.
@@ -132,10 +132,10 @@ class FilmTile {
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   const BandSums& band(int x, int y, size_t band) const { return bands_[index(x, y) * band_count_ + band]; }
   const Hits& hits(int x, int y) const { return hits_[index(x, y)]; }
-  /// Sum of value `i` of the channels of kind mean, and value `i` of those of kind nearest.
+  /// Sum of value `i` of the channels of kind mean, and value `i` of the channels of kind nearest.
   const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
-  /// List `i` of mattes: over the samples that reach a pixel; without splatting, over those of the pixel.
+  /// List `i` of mattes: over the samples that reach a pixel; without splatting, over the samples of the pixel.
   const MatteList& mattes(int x, int y, size_t i) const {
     return mattes_[(shares_samples() ? reached_index(x, y) : index(x, y)) * matte_count_ + i];
   }
@@ -145,8 +145,8 @@ class FilmTile {
   const BandSplat& band_splat(int x, int y, size_t band) const {
     return band_splats_[reached_index(x, y) * band_count_ + band];
   }
-  /// Sums over the samples that reach a pixel; without splatting, over those of the pixel. For a film with `halves`,
-  /// the same over the first half of the samples.
+  /// Sums over the samples that reach a pixel; without splatting, over the samples of the pixel. For a film with
+  /// `halves`, the same over the first half of the samples.
   WeightedSums sums(int x, int y) const;
   const WeightedSums& first_half(int x, int y) const {
     return first_half_[shares_samples() ? reached_index(x, y) : index(x, y)];

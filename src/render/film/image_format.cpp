@@ -46,27 +46,27 @@ class PixelWriter {
   }
   void write_image(int x, int y, float* to) {
     to_ = to;
-    if (!format_.space.empty()) return put(film_.mean(x, y));
+    if (!format_.space.empty()) return append(film_.mean(x, y));
     Triple xyz{};
     for (size_t b = 0; b < format_.bands.size(); ++b) {
       const double mean = film_.band(x, y, b);
-      put(mean);
+      append(mean);
       add_band(b, mean, xyz);
     }
-    if (!preview_.empty()) put_preview(xyz);
+    if (!preview_.empty()) append_preview(xyz);
   }
 
  private:
   /// Clamps values to the largest finite value of the file's format.
-  void put(double value) { *to_++ = float(std::clamp(value, -largest_, largest_)); }
-  void put(const Triple& values) {
-    for (const double v : values) put(v);
+  void append(double value) { *to_++ = float(std::clamp(value, -largest_, largest_)); }
+  void append(const Triple& values) {
+    for (const double v : values) append(v);
   }
 
   void write_colors(int x, int y) {
-    put(film_.mean(x, y));
-    put(film_.variance(x, y));
-    put(film_.leaf_fraction(x, y));
+    append(film_.mean(x, y));
+    append(film_.variance(x, y));
+    append(film_.leaf_fraction(x, y));
   }
 
   void write_bands(int x, int y) {
@@ -75,19 +75,19 @@ class PixelWriter {
     float* const variances = to_ + count;
     for (size_t b = 0; b < count; ++b) {
       const Film::BandMean m = film_.band_mean(x, y, b);
-      put(m.mean);
+      append(m.mean);
       variances[b] = float(std::min(m.variance, largest_));
       add_band(b, m.mean, xyz);
     }
     to_ += count;
-    put(film_.leaf_fraction(x, y));
-    if (!preview_.empty()) put_preview(xyz);
+    append(film_.leaf_fraction(x, y));
+    if (!preview_.empty()) append_preview(xyz);
   }
 
   void add_band(size_t band, double mean, Triple& xyz) const {
     for (size_t c = 0; c < 3 && !preview_.empty(); ++c) xyz[c] += preview_[band][c] * mean;
   }
-  void put_preview(const Triple& xyz) { put(find_color_space("srgb")->rgb_from_xyz * xyz); }
+  void append_preview(const Triple& xyz) { append(find_color_space("srgb")->rgb_from_xyz * xyz); }
 
   void write_channels(int x, int y) {
     const ChannelList& channels = film_.format().channels;
@@ -98,49 +98,50 @@ class PixelWriter {
     size_t matte = 0;
     for (const ChannelInfo* channel : channels.infos()) {
       if (channel->is_matte()) {
-        put_mattes(channel->kind, film_.mattes(x, y, matte++));
+        append_mattes(channel->kind, film_.mattes(x, y, matte++));
         continue;
       }
       if (!channel->value) {
-        put_statistic(channel->kind, x, y);
+        append_statistic(channel->kind, x, y);
         continue;
       }
       const double*& value = channel->kind == ChannelInfo::Kind::mean ? mean : id;
       if (channel->space == ChannelInfo::Space::none)
-        for (size_t c = 0; c < channel->size(); ++c) put(channel->is_share ? std::clamp(value[c], 0.0, 1.0) : value[c]);
+        for (size_t c = 0; c < channel->size(); ++c)
+          append(channel->is_share ? std::clamp(value[c], 0.0, 1.0) : value[c]);
       else
-        put(mapped({value[0], value[1], value[2]},
-                   channel->space == ChannelInfo::Space::point && features.hits > 0 ? 1 : 0));
+        append(to_output_space({value[0], value[1], value[2]},
+                               channel->space == ChannelInfo::Space::point && features.hits > 0 ? 1 : 0));
       value += channel->size();
     }
   }
 
   /// IDs of Cryptomatte are bits, not quantities: they are not clamped.
-  void put_mattes(ChannelInfo::Kind kind, const std::vector<Matte>& mattes) {
+  void append_mattes(ChannelInfo::Kind kind, const std::vector<Matte>& mattes) {
     if (kind == ChannelInfo::Kind::cryptomatte) {
       to_ = std::ranges::copy(matte_values(mattes, format_.names), to_).out;
       return;
     }
     double alpha = 0;
     for (const Matte& m : mattes) alpha += m.coverage;
-    put(std::min(alpha, 1.0));
+    append(std::min(alpha, 1.0));
   }
 
-  void put_statistic(ChannelInfo::Kind kind, int x, int y) {
+  void append_statistic(ChannelInfo::Kind kind, int x, int y) {
     const double samples = double(film_.samples(x, y));
-    if (kind == ChannelInfo::Kind::sample_count) return put(samples);
+    if (kind == ChannelInfo::Kind::sample_count) return append(samples);
     const Triple mean = film_.mean(x, y);
     Triple variance = film_.variance(x, y);
     for (size_t c = 0; c < 3; ++c) {
       variance[c] *= samples;
       if (kind == ChannelInfo::Kind::relative_variance) variance[c] = mean[c] == 0 ? 0 : variance[c] / mean[c];
     }
-    put(variance);
+    append(variance);
   }
 
   /// Transforms a point (w = 1) or a vector (w = 0). Camera transformations have no shear: normals transform as
   /// vectors.
-  Triple mapped(const Vec3d& v, double w) const {
+  Triple to_output_space(const Vec3d& v, double w) const {
     Triple result{};
     for (size_t i = 0; i < 3; ++i) {
       const auto& row = format_.from_world[i];
@@ -173,7 +174,7 @@ Image empty_image(const Film& film, const ImageFormat& format) {
   return {crop.width(), crop.height(), PixelWriter(film, format).image_names()};
 }
 
-bool renew_image(const Film& film, const ImageFormat& format, const std::stop_token& stop, Image& image) {
+bool update_image(const Film& film, const ImageFormat& format, const std::stop_token& stop, Image& image) {
   PixelWriter writer(film, format);
   const Crop& crop = film.settings().crop;
   for (size_t i = 0; i < film.tiles(); ++i) {

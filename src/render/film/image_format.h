@@ -32,6 +32,6 @@ Image film_image(const Film& film, const ImageFormat& format);
 Image empty_image(const Film& film, const ImageFormat& format);
 /// Updates such an image from a film that other threads may be adding to; each tile contains complete work items only.
 /// Returns false if `stop` was requested before the end.
-bool renew_image(const Film& film, const ImageFormat& format, const std::stop_token& stop, Image& image);
+bool update_image(const Film& film, const ImageFormat& format, const std::stop_token& stop, Image& image);
 
 }  // namespace frond

@@ -16,7 +16,7 @@ inline constexpr size_t kMostMattes = 3;
 /// material; 0: no surface.
 using MatteKey = int64_t;
 
-/// Weights of a pixel's samples by what they hit. Sums are exact and do not depend on the order of samples.
+/// Weights of a pixel's samples by the surface that they hit. Sums are exact and do not depend on the order of samples.
 class MatteList {
  public:
   struct Entry {
@@ -44,7 +44,7 @@ class MatteList {
   std::vector<Entry> entries_;
 };
 
-/// What the camera ray of a sample hits, by list.
+/// Surface that the camera ray of a sample hits, by list.
 struct MatteSample {
   std::array<MatteKey, kMostMattes> keys{};
   double weight = 1;  ///< filter weight

@@ -31,8 +31,8 @@ struct Splatting {
   Crop sampled{};  ///< pixels whose samples are taken; for a whole image the film's crop, widened by the reach
 
   /// Mean of the weight, and of its square, of a sample in the pixel at this offset from the sample's own.
-  double mean(int dx, int dy) const { return of(axes[0].mean, dx, 0) * of(axes[1].mean, dy, 1); }
-  double square(int dx, int dy) const { return of(axes[0].square, dx, 0) * of(axes[1].square, dy, 1); }
+  double mean(int dx, int dy) const { return value_at(axes[0].mean, dx, 0) * value_at(axes[1].mean, dy, 1); }
+  double square(int dx, int dy) const { return value_at(axes[0].square, dx, 0) * value_at(axes[1].square, dy, 1); }
   int reach_x() const { return axes[0].reach; }
   int reach_y() const { return axes[1].reach; }
   /// Pixels in `sampled` whose samples reach some of these pixels.
@@ -40,7 +40,7 @@ struct Splatting {
   bool operator==(const Splatting&) const = default;
 
  private:
-  double of(const std::vector<double>& values, int d, size_t axis) const {
+  double value_at(const std::vector<double>& values, int d, size_t axis) const {
     return values[size_t(d + axes[axis].reach)];
   }
 };

@@ -73,21 +73,15 @@ std::string loaded_from(std::span<const std::string> plugins) {
   return names.empty() ? names : "; plug-ins are loaded from" + names;
 }
 
-void rethrow_naming(std::span<const std::string> plugins) {
+void rethrow_naming_plugins(std::span<const std::string> plugins) {
   const std::string names = loaded_from(plugins);
   if (names.empty()) throw;
   try {
     throw;
-  } catch (const InputError&) {
-    throw;
-  } catch (const Stopped&) {
-    throw;
   } catch (const std::bad_alloc&) {
     fail({}, "out of memory{}", names);
-  } catch (const std::exception& error) {
-    fail({}, "a plug-in has a defect: {}{}", error.what(), names);
   } catch (...) {
-    fail({}, "a plug-in has a defect: it threw an object that is no std::exception{}", names);
+    fail({}, "a plug-in has a defect: {}{}", plugin_defect(), names);
   }
 }
 

@@ -21,7 +21,7 @@ std::string loaded_from(std::span<const std::string> plugins);
 
 /// Rethrows the current exception. If frond's own code does not throw such exceptions and shared objects are loaded, it
 /// becomes an InputError that names them.
-[[noreturn]] void rethrow_naming(std::span<const std::string> plugins);
+[[noreturn]] void rethrow_naming_plugins(std::span<const std::string> plugins);
 
 /// Hash of frond's own code: the library, and the shared object for image files.
 uint64_t hash_program(uint64_t seed);

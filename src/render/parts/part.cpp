@@ -17,7 +17,7 @@ std::string text_of(const Crop& c) { return fmt::format("{},{},{},{}", c.x0, c.x
 
 Crop scaled(const Crop& c, int scale) { return {c.x0 * scale, c.y0 * scale, c.x1 * scale, c.y1 * scale}; }
 
-Crop around(const Crop& a, const Crop& b) {
+Crop bounding_rectangle(const Crop& a, const Crop& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
@@ -70,7 +70,7 @@ SampleCount sample_count(const Film& film) {
   return count;
 }
 
-std::string what_is_missing(const RenderPart& part) {
+std::string missing_samples_text(const RenderPart& part) {
   const uint64_t most = sample_count(part.film).most;
   std::string beside;  // missing samples of pixels outside of the image, with splatting
   for (size_t i = 0; i < part.film.tiles(); ++i) {
@@ -86,7 +86,7 @@ std::string what_is_missing(const RenderPart& part) {
   return beside;
 }
 
-bool lacks_neighbors(const Film& film) {
+bool lacks_neighboring_samples(const Film& film) {
   const auto& s = film.format().splatting;
   return s && s->sampled != widened(film.settings().crop, s->reach_x(), s->reach_y());
 }
@@ -106,8 +106,8 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
     if (head.film.halves != format.halves)
       fail({}, "\"{}\" was rendered with --max-rms, \"{}\" without: they cannot be merged",
            (format.halves ? files.front() : file).string(), (format.halves ? file : files.front()).string());
-    format.settings.crop = around(format.settings.crop, head.film.settings.crop);
-    if (format.splatting) format.splatting->sampled = around(format.sampled(), head.film.sampled());
+    format.settings.crop = bounding_rectangle(format.settings.crop, head.film.settings.crop);
+    if (format.splatting) format.splatting->sampled = bounding_rectangle(format.sampled(), head.film.sampled());
     header.request = std::max(header.request, head.header.request);
     header.adaptive |= head.header.adaptive;
     header.statistics += head.header.statistics;

@@ -36,11 +36,11 @@ SampleCount sample_count(const Film& film);
 
 /// Message about missing samples: a pixel whose samples do not begin at index 0, have gaps, or, unless the render is
 /// adaptive, end before those of another pixel. Empty if none are missing.
-std::string what_is_missing(const RenderPart& part);
+std::string missing_samples_text(const RenderPart& part);
 
 /// With splatting: true if pixels at the edges of the crop lack contributions of samples next to it, which other parts
 /// of the image contain.
-bool lacks_neighbors(const Film& film);
+bool lacks_neighboring_samples(const Film& film);
 
 /// Merges part files; the film's crop is the bounding rectangle of their crops. Throws an InputError with the two files
 /// and the samples that they have in common, or the field of the identity in which they differ.

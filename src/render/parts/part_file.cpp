@@ -252,7 +252,7 @@ PartHeader header_of(const Json& j) {
   return h;
 }
 
-PartHead head_of(const Json& j) { return {header_of(j), film_format_of(j.at("film"))}; }
+PartHead parsed_head(const Json& j) { return {header_of(j), film_format_of(j.at("film"))}; }
 
 // --- sums, compressed
 
@@ -463,7 +463,7 @@ PartHead read_part_head(const fs::path& path) try {
   size_t compressed = 0;
   const std::string front = read_front(path, compressed);
   std::string_view bytes = front;
-  PartHead head = head_of(take_header(bytes, path));
+  PartHead head = parsed_head(take_header(bytes, path));
   check_claim(head.film, compressed, path);
   return head;
 } catch (const Json::exception& error) {
@@ -477,7 +477,7 @@ RenderPart decode_part(std::string_view bytes, const fs::path& path) try {
     if (!bytes.ends_with(kEnd)) fail_to_read(path, "is cut short");
     bytes.remove_suffix(kEnd.size());
   }
-  PartHead head = head_of(take_header(bytes, path));
+  PartHead head = parsed_head(take_header(bytes, path));
   check_claim(head.film, bytes.size(), path);
   Film film(head.film);
   RenderPart part{std::move(head.header), std::move(film)};

@@ -64,7 +64,7 @@ Pilot::Pilot(const ChoiceTask& task, const Ladder& ladder)
   }
   scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache(), task.other,
                                          &shared_);
-  exponent_ = film_exponent(*scene_);
+  exponent_ = film_exponent(job_of(*scene_), scene_->film().exposure);
   const auto leaves = open_leaves(description, registry, scene_->wavelengths(), ladder);
   open_choices_.insert(open_choices_.end(), leaves.begin(), leaves.end());
   pixels_ = pilot_pixels(film_.crop, kPixels, hash_key(scene_->seed(), uint64_t{kPixelSeed}));

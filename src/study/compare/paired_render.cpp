@@ -17,8 +17,8 @@ PairedRender::PairedRender(const Study& study, const Candidate& candidate, uint6
                            size_t pairs)
     : setup_cpu_seconds_(cpu_seconds()),
       scene_(study.scene(candidate)),
-      films_(checked_film(study, *scene_, 2 * pairs), film_exponent(*scene_), {first_seed, second_seed},
-             study.description(), study.registry(), *scene_) {
+      films_(checked_film(study, *scene_, 2 * pairs), film_exponent(job_of(*scene_), scene_->film().exposure),
+             {first_seed, second_seed}, study.description(), study.registry(), *scene_) {
   setup_cpu_seconds_ = cpu_seconds() - setup_cpu_seconds_;
 }
 
