@@ -47,7 +47,7 @@ bool ShadowRay::attenuate(const Ray& ray, RandomStream& rng) {
     MajorantSteps steps = medium_->majorants(ray, lambda_);
     MajorantSteps::Step step;
     while (steps.next(step)) {
-      const SampledSpectrum t = transmittance(step.sigma, step.end - step.begin);
+      const SampledSpectrum t = beer_lambert(step.sigma, step.end - step.begin);
       path_.multiply(t, t, SampledSpectrum(1));
     }
     return !path_.beta.is_black();

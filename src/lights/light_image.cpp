@@ -57,8 +57,7 @@ class FitTable {
     if (!node) {
       const auto share = [](size_t at) { return double(at * at) / double((kNodes - 1) * (kNodes - 1)); };
       Triple rgb{};
-      rgb[largest] = 0.5, rgb[(largest + 1) % 3] = texel_spectrum(i) / 2,
-      rgb[(largest + 2) % 3] = texel_spectrum(j) / 2;
+      rgb[largest] = 0.5, rgb[(largest + 1) % 3] = share(i) / 2, rgb[(largest + 2) % 3] = share(j) / 2;
       node = fit_reflectance(space_, rgb).reflectance.coefficients();
     }
     return *node;

@@ -12,7 +12,7 @@
 namespace frond {
 
 /// exp(-sigma d) in each lane; 1 where sigma is 0, also over an infinite distance.
-inline SampledSpectrum transmittance(const SampledSpectrum& sigma, float d) {
+inline SampledSpectrum beer_lambert(const SampledSpectrum& sigma, float d) {
   d = std::min(d, std::numeric_limits<float>::max());
   SampledSpectrum t;
   for (int i = 0; i < kLanes; ++i) t[i] = std::exp(-sigma[i] * d);
@@ -39,7 +39,7 @@ bool track(const Medium& medium, const Ray& ray, const SampledWavelengths& lambd
     for (;;) {
       const double t = sigma > 0 ? at + double(depth / sigma) : double(INFINITY);
       if (!(t < double(reach))) break;
-      transmittance *= transmittance(step.sigma, float(t - at));
+      transmittance *= beer_lambert(step.sigma, float(t - at));
       if (!collide(ray.o + ray.d * float(double(step.begin) + t), step.sigma, transmittance)) return false;
       poll();
       transmittance = SampledSpectrum(1);
@@ -48,7 +48,7 @@ bool track(const Medium& medium, const Ray& ray, const SampledWavelengths& lambd
     }
     const float rest = float(double(reach) - at);
     if (sigma > 0) depth = std::max(0.f, depth - sigma * rest);
-    transmittance *= transmittance(step.sigma, rest);
+    transmittance *= beer_lambert(step.sigma, rest);
   }
   return true;
 }
