@@ -127,9 +127,9 @@ class Sweep {
           for (const ParsedParam& value : at(*p, swept_range(*p), end)) add(text(value), {value});
     }
     for (int i = 0; i < options.random_corners; ++i)
-      add_random(fmt::format("corner {}", i), ends, [this] { return numbers_.uniform() < 0.5f ? 0.0 : 1.0; });
+      add_random(fmt::format("corner {}", i), swept_range, [this] { return numbers_.uniform() < 0.5f ? 0.0 : 1.0; });
     for (int i = 0; i < options.random_points; ++i)
-      add_random(fmt::format("point {}", i), inside, [this] { return numbers_.uniform_double(); });
+      add_random(fmt::format("point {}", i), interior_range, [this] { return numbers_.uniform_double(); });
     return std::move(sets_);
   }
 

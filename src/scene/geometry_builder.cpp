@@ -26,9 +26,9 @@ void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Loca
   if (!fits(mesh.n.size(), vertices) || !fits(mesh.uv.size(), vertices))
     reject(fmt::format("it has made a mesh of {} vertices with {} normals and {} texture coordinates", vertices,
                        mesh.n.size(), mesh.uv.size()));
-  if (!fits(mesh.turned.size(), triangles))
+  if (!fits(mesh.flipped.size(), triangles))
     reject(fmt::format("it has made a mesh of {} triangles, and says of {} whether they are turned", triangles,
-                       mesh.turned.size()));
+                       mesh.flipped.size()));
   if (mesh.halves_from < triangles && (triangles - mesh.halves_from) % 2 != 0)
     reject(
         fmt::format("it has made a mesh of {} triangles, which from {} on are no pairs", triangles, mesh.halves_from));

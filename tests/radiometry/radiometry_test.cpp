@@ -389,5 +389,30 @@ TEST_F(Radiometry, WhatCannotBeMeasuredIsRefused) {
               HasSubstr("not above the horizon"));
 }
 
+struct TornBsdf final : Bsdf {
+  Lobes flags() const override { return Lobes::reflection | Lobes::diffuse; }
+  SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }
+  std::optional<BsdfSample> sample(const Vec3&, float, Vec2, RandomStream&) const override {
+    throw std::runtime_error("thrown by sample");
+  }
+  float pdf(const Vec3&, const Vec3&) const override { return 0; }
+};
+struct Torn final : Material {
+  explicit Torn(const Params&) {}
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena& arena) const override {
+    return arena.make<TornBsdf>();
+  }
+};
+const MaterialInfo kTorn{{"material", "torn", "", "", {}}, make_material<Torn>};
+
+TEST_F(Radiometry, AnExceptionDuringFluxNamesItsMaterial) {
+  Session session(silent_log(), {2, {}, {}});
+  session.add_material(kTorn);
+  const std::string text = "WorldBegin\n" + kSun + "Material \"torn\" Shape \"disk\"\n";
+  FluxMeter meter(session, session.read_text(text, "test.pbrt"), {});
+  EXPECT_THAT(error_of([&] { meter.trace(1024, session.pool()); }),
+              AllOf(HasSubstr("test.pbrt:3"), HasSubstr("material \"torn\" has a defect: thrown by sample")));
+}
+
 }  // namespace
 }  // namespace frond

@@ -63,17 +63,16 @@ TEST(CameraSamples, WithoutJitterAreAtTheCentresOfPixelAndLens) {
   }
 }
 
-// At time 0 the light is out of view: only paths with times of their own can see it.
+// At time 0 the light is out of view: only paths with times of their own hit it.
 TEST(FilmExponent, UsesTheTimesOfTheRender) {
   ThreadPool pool(1);
   const std::string light =
       "AreaLightSource \"diffuse\" \"float scale\" 64 \"bool twosided\" true Shape \"trianglemesh\" "
       "\"point3 P\" [-9 -9 4 9 -9 4 9 9 4 -9 9 4] \"integer indices\" [0 1 2 0 2 3]";
-  const auto still = scene_of("", "Translate 100 0 0 " + light, pool);
-  const auto moving =
-      scene_of("", "Translate 100 0 0 ActiveTransform EndTime Translate -200 0 0 ActiveTransform All " + light, pool);
-  EXPECT_EQ(film_exponent(job_of(*still), 1), 0);  // black
-  EXPECT_GT(film_exponent(job_of(*moving), 1), 0);
+  const std::string away = "Translate 100 0 0 ",
+                    past = "ActiveTransform EndTime Translate -200 0 0 ActiveTransform All ";
+  EXPECT_EQ(film_exponent(job_of(*scene_of(away, light, pool)), 1), 0);  // black
+  EXPECT_GT(film_exponent(job_of(*scene_of(away + past, light, pool)), 1), 0);
 }
 
 }  // namespace

@@ -313,17 +313,16 @@ void Shapes::write_area_light(Xml& xml, const ShapeDescription& shape) {
     return;
   }
   const Params p(context_.registry.area_lights.get(plugin.name, plugin.where), plugin, context_.resolver);
-  const auto lacks = [&](std::string_view name, const std::string& what, std::string_view instead) {
+  const auto report = [&](std::string_view name, const std::string& what, std::string_view instead) {
     context_.report_unsupported("lights", p.where(name), what, instead);
   };
   if (p.given("filename"))
-    report_unsupported("filename", "the image of an area light is not exported",
-                       "its surface emits as a white image would");
+    report("filename", "the image of an area light is not exported", "its surface emits as a white image would");
   if (p.boolean("twosided"))
-    report_unsupported("twosided", "an area light of both sides has no equivalent in Mitsuba", "its front emits");
+    report("twosided", "an area light of both sides has no equivalent in Mitsuba", "its front emits");
   if (p.given("power") && p.real("power") > 0)
-    report_unsupported("power", "the \"power\" of an area light is not exported: \"L\" and \"scale\" are",
-                       "it is ignored: the light's brightness differs");
+    report("power", "the \"power\" of an area light is not exported: \"L\" and \"scale\" are",
+           "it is ignored: the light's brightness differs");
   const SpectrumPtr spectrum = p.spectrum("L");
   const auto values = context_.spectra.values([&](const auto& lambda) { return spectrum->sample(lambda); });
   const Element emitter(xml, "emitter", {{"type", "area"}});

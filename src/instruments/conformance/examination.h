@@ -209,7 +209,8 @@ class Verdict {
   void begin_case() { ++cases_, case_failed_ = false; }
   /// Begins a case and sets the direction that the following expectations refer to.
   void begin_case_at(const Vec3& wi) {
-    begin_case() if (!series_) return;
+    begin_case();
+    if (!series_) return;
     bin_ = series_->bins.find(wi);
     asked_[bin_] += 1;
   }

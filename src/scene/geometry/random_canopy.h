@@ -74,7 +74,7 @@ class LeafPlacer {
   Vec3d position(RandomStream& random) const;
   Vec3d position_in_crown(RandomStream& random) const;
   /// Whether the position is far enough from all earlier leaves; if so, it is recorded.
-  bool takes_room(const Vec3d& p);
+  bool try_to_place(const Vec3d& p);
   Cell cell_of(const Vec3d& p) const;
 
   const RandomCanopy& canopy_;

@@ -54,7 +54,7 @@ std::vector<RandomSurfacePoint> SurfacePoints::draw(uint64_t key, uint64_t first
       const auto sample = emitter.sample({u, random.uniform()});
       const Vec3& own = sample.point.p;
       const Vec3 ng = map.normal(sample.point.ng), p = map.point(own);
-      const Vec3 reach = map.largest_point({std::abs(own.x), std::abs(own.y), std::abs(own.z)});
+      const Vec3 reach = map.bound_point({std::abs(own.x), std::abs(own.y), std::abs(own.z)});
       const double alpha = std::clamp(double(emitter.opacity({own, sample.point.ng, sample.uv})), 0.0, 1.0);
       points[index - first] = {p, normalize_any(ng), largest_coordinate(reach),
                                alpha * double(sample.weight) * double(length(ng)) / factor};
