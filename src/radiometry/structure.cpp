@@ -128,7 +128,7 @@ std::vector<uint8_t> counted_materials(const SceneDescription& description, cons
   if (std::ranges::count(flags, 0) == std::ssize(flags)) {
     std::ranges::sort(known);
     known.erase(std::ranges::unique(known).begin(), known.end());
-    fail({}, "no material of the scene is a leaf model: name those of leaves by --material; there are \"{}\"",
+    fail({}, "no material of the scene is a leaf model: name the leaves by \"material\"; there are \"{}\"",
          fmt::join(known, "\", \""));
   }
   return flags;

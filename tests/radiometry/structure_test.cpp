@@ -263,7 +263,7 @@ TEST_F(Structure, WhatCountsAsALeafIsNamed) {
   const auto error = [&](const std::vector<std::string>& materials) {
     return error_of([&] { measured(world, {.zeniths_deg = {0}, .materials = materials}, 64); });
   };
-  EXPECT_THAT(error({}), HasSubstr("no material of the scene is a leaf model: name those of leaves by --material; "
+  EXPECT_THAT(error({}), HasSubstr("no material of the scene is a leaf model: name the leaves by \"material\"; "
                                    "there are \"diffuse\", \"green\", \"soil\""));
   EXPECT_THAT(error({"gren"}), HasSubstr("the scene has no material \"gren\"; did you mean \"green\"?"));
   const StructureMeasurement m = measured(world, {.zeniths_deg = {0}, .materials = {"green"}}, 20000);
