@@ -1,4 +1,4 @@
-"""The reference solution and the scenes of scripts/rami."""
+"""The measurement rami: its reference solution and its scenes."""
 
 import pathlib
 import tempfile
