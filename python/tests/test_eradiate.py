@@ -14,7 +14,7 @@ CODE = """
 import eradiate, numpy
 eradiate.set_mode("mono")
 eradiate.config.settings.progress = "NONE"
-import eradiate_leaf as report
+from measurements import eradiate as report
 from frond.eradiate import FrondLeafCloud
 
 cloud = FrondLeafCloud.cuboid(n_leaves=4, leaf_radius=0.1, l_horizontal=1.0, l_vertical=1.0)
@@ -35,7 +35,7 @@ def test_a_canopy_has_our_brf():
     python = os.environ.get("FROND_ERADIATE_PYTHON", str(ROOT / "build" / "eradiate-venv" / "bin" / "python"))
     if not os.path.exists(python):
         pytest.skip("Eradiate is not installed: measurements/run eradiate does")
-    paths = [*sys.path[:1], os.environ.get("FROND_PYTHON_PATH", str(ROOT / "build/release/python")), str(ROOT / "scripts" / "reports")]
+    paths = [*sys.path[:1], os.environ.get("FROND_PYTHON_PATH", str(ROOT / "build/release/python")), str(ROOT)]
     found = subprocess.run([python, "-c", CODE], capture_output=True, text=True, env=dict(os.environ, PYTHONPATH=os.pathsep.join(paths)))
     assert found.returncode == 0, found.stderr
     # 14 figures of 7 degrees of freedom each: Student's t beyond 8.5 has a chance of 6e-5, of any 9e-4. Seeds are fixed.

@@ -4,7 +4,6 @@ import math
 import os
 import pathlib
 import subprocess
-import sys
 
 import frond
 import numpy
@@ -218,10 +217,10 @@ Shape "bilinearmesh" "point3 P" [ 0 0 0  1 0 0  0 1 0  1 1 0 ]
 """
 
 
-def test_a_turbid_medium_has_the_brf_of_the_transfer_equation(tmp_path):
+def test_a_turbid_medium_has_the_brf_of_the_transfer_equation(tmp_path, monkeypatch):
     """Against a solution by doubling, which shares no code with frond (measurements/shared/turbid.py). 5 standard errors."""
-    sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts" / "reports"))
-    from turbid import turbid_layer
+    monkeypatch.syspath_prepend(pathlib.Path(__file__).parents[2])
+    from measurements.shared.turbid import turbid_layer
     (tmp_path / "turbid.pbrt").write_text(TURBID)
     zenith = [-60, -30, 0, 30, 60]
     for azimuth in (0, 90):
