@@ -65,7 +65,7 @@ double error_of_formula(const char* file, const TrowbridgeReitz& facets, const V
   double error = 0, size = 0;
   for (int k = 0; k < 20000; ++k) {
     const Vec3 wi = sample_cosine_hemisphere({rng.uniform(), rng.uniform()}), m = normalize(wo + wi);
-    const float f = facets.density(m) * facets.visibility(wo) * facets.visibility(wi) / 4;  // Smith's G1 apart
+    const float f = facets.density(m) * facets.g1_over_cosine(wo) * facets.g1_over_cosine(wi) / 4;  // Smith's G1 apart
     const float reflectance = 0.9f - 0.6f * (608 - 360) / 470, truth = reflectance * f, found = f_of(ready, wo, wi)[0];
     error += double(found - truth) * double(found - truth) * double(wi.z);
     size += double(truth) * double(truth) * double(wi.z);

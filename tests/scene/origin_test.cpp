@@ -288,7 +288,7 @@ TEST_F(Origin, TexturesAndMediaFollow) {
   const SampledWavelengths lambda = near->wavelengths().sample(0.5f);
   for (const float x : {-0.7f, 0.1f, 0.6f}) {
     const auto *a = near->medium_interfaces()[0].inside, *b = far->medium_interfaces()[0].inside;
-    EXPECT_NEAR(a->at({x, 0, 0}, lambda).sigma_s[0], b->at({x, 0, 0}, lambda).sigma_s[0], 1e-5f);
+    EXPECT_NEAR(a->properties({x, 0, 0}, lambda).sigma_s[0], b->properties({x, 0, 0}, lambda).sigma_s[0], 1e-5f);
   }
 }
 

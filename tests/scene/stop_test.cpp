@@ -54,7 +54,7 @@ TEST(Stop, EndsTheMajorantsOfAGrid) {
   const SampledGrid<float> grid(std::vector<float>(20 * 20 * 20, 1.f), {20, 20, 20});
   expect_stopped([&] {
     MajorantGrid majorants(16);
-    grid.bound(majorants, [](float v) { return v; });
+    grid.fill_majorants(majorants, [](float v) { return v; });
   });
 }
 
