@@ -44,7 +44,7 @@ class Observer:
 
 
 def rgb(xyz):
-    return numpy.linalg.solve(color.XYZ_FROM_RGB["linear sRGB"], xyz)
+    return numpy.linalg.solve(color_difference.XYZ_FROM_RGB["linear sRGB"], xyz)
 
 
 def chroma(xyz):

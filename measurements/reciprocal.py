@@ -11,9 +11,13 @@ import numpy
 
 import frond
 
+from .shared import charts
+from .shared.tools import ROOT, arguments, machine, plane_of_incidence, rms, sized, table, write_section
+
 LEAVES = ("soybean", "maize")
 CONVENTIONS = ("traced", "light", "reciprocal")
 SCENES = {"front": "front lit", "back": "back lit", "ambient": "ambient light"}
+
 
 def shares_by_angle(material, angles, nm):
     """Reflected and transmitted shares of the incident light: two rows, a column for each angle."""
@@ -21,6 +25,7 @@ def shares_by_angle(material, angles, nm):
     shares = found["f"][:, 0] * found["projected_solid_angle_sr"]
     reflected = (found["theta_o_deg"] < 90) == (numpy.array(angles) <= 90)[:, None, None]
     return [(shares * side).sum(axis=(1, 2)) for side in (reflected, ~reflected)]
+
 
 def shares():
     angles = (0, 30, 60, 80, 100, 120, 150, 180)
@@ -33,6 +38,7 @@ def shares():
                     body.append([f"`{material}`, {leaf}", nm, name, *(f"{x:.3f}, {y:.3f}" for x, y in zip(model, reciprocal))])
     return table(["", "nm", ""] + [f"{a}°" for a in angles], body)
 
+
 def diffuse_transmittance(leaf, nm, incident):
     """Transmittance of diffuse light from above and from below, by Gauss quadrature in the cosine."""
     nodes, weights = numpy.polynomial.legendre.leggauss(8)
@@ -40,6 +46,7 @@ def diffuse_transmittance(leaf, nm, incident):
     angles = numpy.degrees(numpy.arccos(cosines))
     material = f"leaf_solved,specimen={leaf},incident={incident}"
     return [weights * cosines @ shares_by_angle(material, list(side), nm)[1] for side in (angles, 180 - angles)]
+
 
 def energy():
     angles, body = (5, 30, 60, 75, 85, 89), []
@@ -50,6 +57,7 @@ def energy():
             sums = (found["f"][:, 0] * found["projected_solid_angle_sr"]).sum(axis=(1, 2))
             body.append([f"`{material}`", incident] + [f"{x:.4f}" for x in sums])
     return table(["", "`incident`"] + [f"{a}°" for a in angles], body)
+
 
 def changes(folder):
     """RMS difference of f_r and f for each direction of light, and the chart of both in the plane of incidence."""
@@ -78,6 +86,7 @@ def changes(folder):
     charts.save(of, folder / "shape.svg")
     return table(["", "nm"] + [f"light at {a}°" for a in angles], body)
 
+
 def noise(scene, incident, samples, first_seed):
     """Noise of a render over the pixels that show leaves only: RMS, and median scaled to the RMS of a normal distribution."""
     a, b = (frond.load(scene, wavelengths="smpte", swap={"leaf": f"leaf_solved,incident={incident}"}, seed=first_seed + k)
@@ -85,6 +94,7 @@ def noise(scene, incident, samples, first_seed):
     leaves = (a["leaf"] == 1) & (b["leaf"] == 1)
     differences = abs(a.rgb - b.rgb)[leaves].astype(float) / numpy.sqrt(2)
     return rms(differences), numpy.median(differences) / 0.67449
+
 
 def noise_table(quick, folder):
     size, samples = (64, 16) if quick else (192, 64)
@@ -97,6 +107,7 @@ def noise_table(quick, folder):
             body.append([title, incident, f"{total:.4f}", f"{median:.4f}", f"{ratio:.2f}", f"{ratio / ratios[name, 'traced']:.2f}"])
     text = table(["scene", "`incident`", "RMS", "median", "RMS / median", "relative to traced"], body)
     return text, size, samples
+
 
 def convergence(quick, folder, images):
     """Noise times the square root of the number of samples, which is constant if the variance is finite."""
@@ -117,6 +128,7 @@ def convergence(quick, folder, images):
     charts.save(of, images / "settling.svg")
     return table(["scene", "`incident`"] + [f"{n} samples" for n in counts], body), size
 
+
 def main():
     options = arguments("reciprocal")
     images = options.docs / "images" / "reciprocal_leaf"
@@ -135,9 +147,6 @@ R + T stays the same. Reciprocity requires the same diffuse transmittance from b
 {shares()}
 The diffuse transmittance (mean of T under diffuse light) of soybean at 551 nm is {model_t[0]:.3f} from above and {model_t[1]:.3f}
 from below with the model, {leaf_t[0]:.3f} and {leaf_t[1]:.3f} with the reciprocal BSDF.
-
-from .shared import charts
-from .shared.tools import ROOT, arguments, machine, plane_of_incidence, rms, sized, table, write_section
 
 **Shape.** RMS of f_r − f relative to the RMS of f, over all outgoing directions, weighted by projected solid angle, including the
 surface lobe:
