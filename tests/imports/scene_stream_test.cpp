@@ -103,10 +103,10 @@ TEST(PlantGeometry, WithoutTrianglesOrBeyondAllBoundsIsAnError) {
 }
 
 TEST(PlantMaterials, PatternsMatchNames) {
-  EXPECT_TRUE(matches("leaf*", "Leaf.001"));
-  EXPECT_TRUE(matches("*", "anything"));
-  EXPECT_TRUE(matches("leaf?", "leaf1"));
-  EXPECT_FALSE(matches("leaf", "leaf1"));
+  EXPECT_TRUE(matches_pattern("leaf*", "Leaf.001"));
+  EXPECT_TRUE(matches_pattern("*", "anything"));
+  EXPECT_TRUE(matches_pattern("leaf?", "leaf1"));
+  EXPECT_FALSE(matches_pattern("leaf", "leaf1"));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class TrueF {
     int m = 0;
     for (const leaf::LeafModes::Grid& h : modes_.series(wo.below, wo.below != wi.below))
       sum += h[i * modes_.sines().size() + o] * std::cos(m++ * phi);
-    const double body = leaf::passage(tissue_, cos_i, cos_o) * sum;
+    const double body = leaf::interface_transmittance(tissue_, cos_i, cos_o) * sum;
     return wo.below == wi.below ? body + surface(wo.vector(), wi.vector(), cos_i, cos_o) : body;
   }
 
