@@ -1,6 +1,6 @@
-#include "core/math/noise.h"
 #include "media/medium_params.h"
 #include "media/null_collisions.h"
+#include "textures/noise.h"
 
 namespace frond {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/math/noise.h"
 #include "core/texture.h"
 #include "spectra/color/reflectance_table.h"
 #include "textures/clamped.h"
+#include "textures/noise.h"
 #include "textures/texture_mapping.h"
 
 namespace frond {

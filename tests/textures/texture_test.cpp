@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/math/noise.h"
 #include "image/image_file.h"
 #include "scene/registry.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
 #include "tests/support/ramp.h"
 #include "textures/mip_map.h"
+#include "textures/noise.h"
 
 namespace frond {
 

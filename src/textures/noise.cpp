@@ -1,4 +1,4 @@
-#include "core/math/noise.h"
+#include "textures/noise.h"
 
 #include <algorithm>
 #include <cmath>
