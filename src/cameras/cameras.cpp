@@ -12,7 +12,7 @@ namespace {
 
 /// The part of the plane z = 1 that the film covers. As in pbrt, the shorter axis spans [-1, 1].
 struct Screen {
-  float x0, x1, y0, y1;
+  float x0, x1, y0, y1;  ///< bounds of the window; camera-space units for an orthographic camera
 };
 
 /// Returns the screen window of the parameters. A degenerate window is an error; one with too few values is ignored.
@@ -32,6 +32,7 @@ Screen screen_of(const Params& p, const CameraPlacement& film) {
 /// Maps film pixels to screen coordinates, and models the thin lens of both projective cameras.
 class ProjectiveCamera : public Camera {
  public:
+  /// `scale` is the factor of the screen window: tan(fov / 2) for a perspective camera, 1 for an orthographic one.
   ProjectiveCamera(const Params& p, const CameraPlacement& placement, float scale)
       : world_from_camera_(placement.world_from_camera),
         lens_radius_(float(p.real("lensradius"))),
@@ -41,9 +42,11 @@ class ProjectiveCamera : public Camera {
     step_ = {(s.x1 - s.x0) * scale / float(placement.width), (s.y0 - s.y1) * scale / float(placement.height)};
   }
 
+  /// False for a pinhole, of radius 0.
   bool uses_lens() const override { return lens_radius_ > 0; }
 
  protected:
+  /// Returns the point of the plane z = 1 of a film position in pixels; y increases downward on the film.
   Vec2 screen_point(Vec2 film) const { return {origin_.x + film.x * step_.x, origin_.y + film.y * step_.y}; }
   /// Converts a camera-space ray to world space. A lens moves the origin within its disk; the point in focus is
   /// unchanged.
@@ -69,9 +72,11 @@ class ProjectiveCamera : public Camera {
     for (int i = 0; i < 4; ++i) ::new (to + i) Ray{o, {d.x[i], d.y[i], d.z[i]}};
     return true;
   }
+  /// As screen_point, of four film positions at once: the x coordinates.
   Float4 screen_x(const Vec2* film) const {
     return origin_.x + Float4{film[0].x, film[1].x, film[2].x, film[3].x} * step_.x;
   }
+  /// As screen_x: the y coordinates.
   Float4 screen_y(const Vec2* film) const {
     return origin_.y + Float4{film[0].y, film[1].y, film[2].y, film[3].y} * step_.y;
   }
@@ -89,8 +94,8 @@ class ProjectiveCamera : public Camera {
   }
 
   Transform world_from_camera_;
-  Vec2 origin_, step_;
-  float lens_radius_, focal_distance_;
+  Vec2 origin_, step_;  ///< screen point of the film's upper left corner; change from one pixel to the next
+  float lens_radius_, focal_distance_;  ///< camera-space units; the distance is measured along z
 };
 
 /// Pinhole or thin-lens camera. "fov" is the angle of the shorter axis.
@@ -102,6 +107,8 @@ class PerspectiveCamera final : public ProjectiveCamera {
     const Vec2 s = screen_point(film);
     return to_world({0, 0, 0}, {s.x, s.y, 1}, lens);
   }
+  /// Generates four rays at a time for a pinhole, with the same bits as `ray`; a lens, the remainder and extreme
+  /// directions use the scalar path.
   void rays(const Vec2* film, const Vec2* lens, int count, Ray* to) const override {
     int i = 0;
     for (; i + 4 <= count && !uses_lens(); i += 4)
@@ -120,6 +127,8 @@ class OrthographicCamera final : public ProjectiveCamera {
   }
 };
 
+/// Names of "mapping": the octahedral map of Clarberg 2008, which preserves area (pbrt 4th ed., 3.8.3), and
+/// latitude-longitude.
 constexpr std::string_view kMappings[] = {"equalarea", "equirectangular"};
 
 /// Camera for all directions around a point, with the zenith at +y.
@@ -215,6 +224,7 @@ void check_shutter(const Params& p) {
   if (close == open) p.warn("shutterclose", "the shutter is open for no time: the image is black");
 }
 
+/// Factory of a camera class T. Throws InputError for invalid parameters.
 template <class T>
 std::unique_ptr<Camera> make_camera(const Params& p, const CameraPlacement& film) {
   check_shutter(p);

@@ -41,7 +41,9 @@ class DistantCamera final : public Camera {
     return {world_from_camera_.point(on_target + toward * distance_),
             normalize_any(world_from_camera_.vector(-toward))};
   }
+  /// The lens sample selects the point on the target.
   bool uses_lens() const override { return true; }
+  /// Adjacent columns are unrelated directions, which a reconstruction filter must not mix.
   bool pixels_are_apart() const override { return true; }
 
  private:
@@ -55,11 +57,12 @@ class DistantCamera final : public Camera {
 
   Transform world_from_camera_;
   std::vector<Vec3> toward_;  ///< from the target to the sensor, unit
-  Vec3 corner_;
-  Vec2 size_;
-  float distance_;
+  Vec3 corner_;               ///< corner of the target with the smallest x and y, camera space
+  Vec2 size_;                 ///< extent of the target along x and y
+  float distance_;            ///< from the target to the ray origins, along the direction
 };
 
+/// "target" and "distance" are lengths in camera space.
 constexpr Param kDistant[] = {
     {.name = "zenith",
      .kind = ParamKind::real,
@@ -84,6 +87,7 @@ constexpr Param kDistant[] = {
      .range = kAtLeastZero,
      .doc = "Distance from the target at which rays start; the scene must be below."}};
 
+/// Factory of "distant". Throws InputError as the constructor does.
 std::unique_ptr<Camera> make_distant(const Params& p, const CameraPlacement& film) {
   return std::make_unique<DistantCamera>(p, film);
 }

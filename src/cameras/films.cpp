@@ -12,6 +12,7 @@
 namespace frond {
 namespace {
 
+/// Pixels along each axis.
 constexpr Interval kResolution{1, 65536};
 constexpr auto kRgb = std::to_array<Param>({
     {.name = "xresolution",
@@ -71,6 +72,7 @@ constexpr auto kRgb = std::to_array<Param>({
 });
 
 constexpr std::string_view kCoordinateSystems[] = {"camera", "world"};
+/// Parameters of "rgb" and the coordinate system of the geometric channels.
 constexpr auto kGbuffer = [] {
   std::array<Param, kRgb.size() + 1> params{};
   std::ranges::copy(kRgb, params.begin());
@@ -127,6 +129,7 @@ FilmSettings make_rgb_film(const Params& p) {
   s.crop = crop_in(p, s.width, s.height);
   s.filename = file_name(p);
   s.half = p.boolean("savefp16");
+  // Imaging ratio of pbrt (4th ed., 5.4.2): exposure time times ISO / 100; 1 leaves radiance unchanged.
   s.exposure = p.real("exposuretime") * p.real("iso") / 100;
   s.max_component =
       p.given("maxcomponentvalue") ? p.real("maxcomponentvalue") : std::numeric_limits<double>::infinity();

@@ -88,6 +88,8 @@ class TabulatedFilter final : public ProductFilter {
  private:
   double value(double offset, double radius) const override { return shape_(offset, radius); }
 
+  /// Piecewise constant table of the filter along one axis; samples have the density of its absolute value (pbrt 4th
+  /// ed., 8.8.2).
   class Axis {
    public:
     Axis(float radius, const Shape& value)
@@ -96,7 +98,9 @@ class TabulatedFilter final : public ProductFilter {
       for (const float c : cells_) sum += c, absolute_sum += std::abs(c);
       weight_ = static_cast<float>(absolute_sum / sum);
     }
+    /// False if the filter integrates to 0 or less: its weights could not be normalized.
     bool is_usable() const { return std::isfinite(weight_) && weight_ > 0; }
+    /// Returns an offset in pixels and a weight, whose expected value is 1.
     std::pair<float, float> sample(float u) const {
       const auto [cell, fraction, pdf] = magnitude_.sample(u);
       const float t = (static_cast<float>(cell) + fraction) / static_cast<float>(cells_.size());
@@ -105,6 +109,7 @@ class TabulatedFilter final : public ProductFilter {
 
    private:
     static constexpr int kCells = 256;
+    /// Returns the values at the centres of the cells from -radius to radius.
     static std::vector<float> tabulate(float radius, const Shape& value) {
       std::vector<float> cells;
       for (int i = 0; i < kCells; ++i)
@@ -116,10 +121,10 @@ class TabulatedFilter final : public ProductFilter {
       for (float& c : cells) c = std::abs(c);
       return cells;
     }
-    float radius_;
+    float radius_;  ///< pixels
     std::vector<float> cells_;
     Distribution1D magnitude_;
-    float weight_;
+    float weight_;  ///< ratio of the integral of the absolute value to the integral
   };
   Shape shape_;
   Axis x_, y_;
@@ -134,6 +139,7 @@ double mitchell(double x, double b, double c) {
   return 0;
 }
 
+/// Normalized sinc, sin(pi x) / (pi x). Near 0 it is 1 up to 2e-10.
 double sinc(double x) { return std::abs(x) < 1e-5 ? 1 : std::sin(M_PI * x) / (M_PI * x); }
 
 /// The value at the radius is subtracted, as in pbrt, so that the filter has no step at its end.

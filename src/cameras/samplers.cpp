@@ -76,13 +76,14 @@ constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
   return v ^ v * 0x53a22864u;
 }
 
+/// Converts to [0, 1). Only the upper 24 bits are used, which a float represents exactly, so that 1 cannot result.
 constexpr float to_unit(uint32_t v) { return static_cast<float>(v >> 8) * 0x1p-24f; }
 
 /// Numbers of one dimension, or a pair of dimensions, of a pixel's samples: sample i is the point
 /// radical_inverse(i) (generator_x, generator_y) + shift, modulo 1 in units of 2^-32.
 struct Lattice {
-  uint32_t shuffle_seed;  ///< 0: the samples are not shuffled
-  uint32_t generator_x, generator_y, shift_x, shift_y;
+  uint32_t shuffle_seed;                                ///< 0: the samples are not shuffled
+  uint32_t generator_x, generator_y, shift_x, shift_y;  ///< fixed-point fractions, units of 2^-32
 
   /// Radical inverse in base 2 of the sample's index, after the shuffle.
   template <bool kShuffles>
@@ -168,6 +169,8 @@ class LatticeSampler final : public SamplerBase {
     }
   }
 
+  /// Returns the lattice of a dimension: shift (Cranley and Patterson 1976), exchange of axes and reflection are
+  /// random, as functions of seed, pixel and dimension.
   Lattice lattice(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
     // From a search: 2^n points of the generating vector (1, kSecond) have a small variance for random edges in a
     // pixel, for all n.
