@@ -5,6 +5,7 @@
 namespace frond {
 namespace {
 
+/// Box, density and coefficients; "frequency" is in cycles for each unit of medium space.
 constexpr Param kCloud[] = {kBoxLow,
                             kBoxHigh,
                             {.name = "density",
@@ -40,17 +41,20 @@ class Cloud final : public Medium {
         frequency_(float(p.real("frequency"))),
         largest_(largest_density()) {}
 
+  /// Coefficients in 1/unit: those of density 1 times the density, which is 0 to 1.
   MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
     const float density = density_at(box_.world_to_local(p));
     return {coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
   }
+  /// One majorant for the whole box: a grid of majorants requires bounds of the noise in each cell.
   MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return box_.steps(ray, nullptr, coefficients_.sigma_t(lambda) * largest_);
   }
+  /// Throws InputError if the cloud is too thin for its majorant.
   void check(const WavelengthStrategy& wavelengths) const override { null_collisions_.check(*this, wavelengths); }
 
  private:
-  /// Difference quotient of the noise.
+  /// Gradient of the noise by forward differences with step 0.01, as in pbrt-v4, for each unit of its lattice.
   static Vec3 gradient(const Vec3& p) {
     constexpr float kStep = 0.01f;
     const float at = perlin_noise(p);
@@ -59,15 +63,18 @@ class Cloud final : public Medium {
   }
   /// pbrt-v4's density, with its constants.
   float density_at(const Vec3& p) const {
+    // The point is displaced by the gradient of two octaves of noise, which gives wisps at the border.
     Vec3 at = p * frequency_;
     if (wispiness_ > 0) {
       float amplitude = 0.05f * wispiness_, frequency = 10;
       for (int octave = 0; octave < 2; ++octave, amplitude *= 0.5f, frequency *= 1.99f)
         at += gradient(at * frequency) * amplitude;
     }
+    // Five octaves of Perlin noise. The ratio 1.99 rather than 2 keeps lattices of the octaves from coinciding.
     float noise = 0, amplitude = 0.5f, frequency = 1;
     for (int octave = 0; octave < 5; ++octave, amplitude *= 0.5f, frequency *= 1.99f)
       noise += amplitude * perlin_noise(at * frequency);
+    // The density decreases with height and is 1 at y = 0, whatever the noise.
     const float thinned = std::clamp((1 - p.y) * 4.5f * density_ * noise, 0.f, 1.f);
     return std::clamp(thinned + 2 * std::max(0.f, 0.5f - p.y), 0.f, 1.f);
   }

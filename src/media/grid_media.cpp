@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kMajorantCells = 16;  // along each axis, as in pbrt-v4
 
+/// Coefficients are in 1/unit, temperatures in kelvin after offset and scale; densities have no unit.
 constexpr Param kUniformGrid[] = {
     kGridX,
     kGridY,
@@ -46,11 +47,13 @@ constexpr Param kUniformGrid[] = {
     kTemperatureScale,
     kTemperatureCutoff};
 
+/// Returns the grid of a list of nx ny nz numbers. Throws InputError if their number differs.
 SampledGrid<float> grid_of(const Params& p, std::string_view name) {
   const auto n = grid_size(p, name);
   const std::vector<double> values = p.reals(name);
   return {{values.begin(), values.end()}, n};
 }
+/// As grid_of; nullopt if the parameter is not given.
 std::optional<SampledGrid<float>> optional_grid(const Params& p, std::string_view name) {
   return p.given(name) ? std::optional(grid_of(p, name)) : std::nullopt;
 }
@@ -58,6 +61,7 @@ std::optional<SampledGrid<float>> optional_grid(const Params& p, std::string_vie
 /// Density and emission on a grid, with the same spectra everywhere.
 class UniformGrid final : public Medium {
  public:
+  /// Throws InputError for both kinds of emission, an empty box, or lists that do not fit the grid.
   UniformGrid(const Params& p, const Transform& world_from_medium)
       : box_(medium_box(p, world_from_medium)),
         null_collisions_(box_.bounds(), world_from_medium, p.where()),
@@ -72,10 +76,12 @@ class UniformGrid final : public Medium {
     density_.fill_majorants(majorants_, [](float v) { return v; });
   }
 
+  /// Coefficients in 1/unit, interpolated trilinearly in the density (pbrt 4th ed., 11.4.4).
   MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
     const Vec3 unit = box_.world_to_unit(p);
     const float density = density_.at(unit);
     MediumPoint point{coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
+    // Both emissions are multiplied by the absorption coefficient: by Kirchhoff's law a medium emits where it absorbs.
     if (temperatures_)
       point.emission = temperature_.emission(temperatures_->at(unit), lambda);
     else if (emission_)
@@ -83,6 +89,7 @@ class UniformGrid final : public Medium {
     point.emission *= point.sigma_a * emission_scale_.at(unit);
     return point;
   }
+  /// Majorants of a 16^3 grid: the extinction coefficient of density 1 times the largest density of each cell.
   MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
@@ -94,13 +101,14 @@ class UniformGrid final : public Medium {
   NullCollisionCheck null_collisions_;
   Coefficients coefficients_;
   Phase phase_;
-  SampledGrid<float> density_, emission_scale_;
-  std::optional<SampledGrid<float>> temperatures_;
+  SampledGrid<float> density_, emission_scale_;     ///< without unit
+  std::optional<SampledGrid<float>> temperatures_;  ///< before offset and scale
   Temperature temperature_;
-  SpectrumPtr emission_;
+  SpectrumPtr emission_;  ///< of luminance 1; null: no emission, or thermal emission
   MajorantGrid majorants_{kMajorantCells};
 };
 
+/// As pbrt-v4's "rgbgrid" (pbrt 4th ed., 11.4.5). Colours are fitted by smooth spectra, which may exceed 1.
 constexpr Param kRgbGrid[] = {
     kGridX,
     kGridY,
@@ -131,12 +139,14 @@ constexpr Param kRgbGrid[] = {
 /// Grid of colours as spectra.
 class ColorGrid {
  public:
+  /// Throws InputError if the number of colours is not nx ny nz, or no spectrum has one of the colours.
   ColorGrid(const Params& p, std::string_view name)
       : name_(name),
         where_(p.where(name)),
         grid_(colors_of(p.vec3s(name), p.color_space(name), where_), grid_size(p, name, 3)) {}
   /// Throws InputError if colours are not defined at the wavelengths.
   void check(const WavelengthStrategy& wavelengths) const { check_range(kCieRange_nm, wavelengths, where_, name_); }
+  /// Returns the spectrum at a position of the unit cube, interpolated between the spectra of the cells.
   SampledSpectrum at(const Vec3& unit, const SampledWavelengths& lambda) const {
     return grid_.at(unit, [&lambda](const Color& c) {
       SampledSpectrum s;
@@ -145,11 +155,13 @@ class ColorGrid {
       return s;
     });
   }
+  /// Raises the majorants to the largest value of each colour's spectrum over all wavelengths.
   void fill_majorants(MajorantGrid& majorants) const {
     grid_.fill_majorants(majorants, [](const Color& c) { return c.scale * c.reflectance.max_value(); });
   }
 
  private:
+  /// The spectrum is the product of a reflectance, 0 to 1, and a scale; scale 0: black.
   struct Color {
     SigmoidPolynomial reflectance{{0, 0, 0}};
     float scale = 0;
@@ -159,6 +171,7 @@ class ColorGrid {
   /// the table is exact for. Throws InputError for a colour that no spectrum has.
   static std::vector<Color> colors_of(const std::vector<Vec3>& rgb, const std::string& space_name,
                                       const Location& where) {
+    // A fit takes far longer than a lookup in the table; most grids have few distinct colours.
     constexpr size_t kMostFits = 10000;
     const ColorSpace& space = color_space(space_name.empty() ? "srgb" : space_name, where);
     std::map<std::array<float, 3>, Color> known;
@@ -196,6 +209,7 @@ class ColorGrid {
   SampledGrid<Color> grid_;
 };
 
+/// Returns the grid of a parameter; nullopt if it is not given.
 std::optional<ColorGrid> optional_colors(const Params& p, std::string_view name) {
   return p.given(name) ? std::optional<ColorGrid>(std::in_place, p, name) : std::nullopt;
 }
@@ -203,6 +217,7 @@ std::optional<ColorGrid> optional_colors(const Params& p, std::string_view name)
 /// Coefficients and emission as colours on a grid.
 class RgbGrid final : public Medium {
  public:
+  /// Throws InputError if both coefficients are missing, or if there is emission but no absorption.
   RgbGrid(const Params& p, const Transform& world_from_medium)
       : box_(medium_box(p, world_from_medium)),
         null_collisions_(box_.bounds(), world_from_medium, p.where()),
@@ -218,6 +233,7 @@ class RgbGrid final : public Medium {
     if (emission_ && !sigma_a_) fail(p.where("Le"), "\"Le\" needs \"rgb sigma_a\": the medium emits sigma_a Le");
     if (sigma_a_) sigma_a_->fill_majorants(of_absorption_);
     if (sigma_s_) sigma_s_->fill_majorants(of_scattering_);
+    // The bound of a sum is the sum of the bounds; a coefficient that is not given is 1 in the whole box.
     std::array<int, 3> c;
     constexpr float kCell = 1 / float(kMajorantCells);
     for (c[2] = 0; c[2] < kMajorantCells; ++c[2])
@@ -231,6 +247,7 @@ class RgbGrid final : public Medium {
 
   MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
     const Vec3 unit = box_.world_to_unit(p);
+    // Only lanes in use are 1, so that coefficients and majorants agree in unused lanes, where both are 0.
     const auto in_use = [&lambda] {
       SampledSpectrum s;
       for (int i = 0; i < lambda.count; ++i) s[i] = 1;
@@ -245,6 +262,7 @@ class RgbGrid final : public Medium {
     return point;
   }
   MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
+    // The grid holds extinction coefficients, with the scale; they bound all wavelengths.
     SampledSpectrum one;
     for (int i = 0; i < lambda.count; ++i) one[i] = 1;
     return box_.steps(ray, &majorants_, one);
@@ -260,9 +278,9 @@ class RgbGrid final : public Medium {
   MediumBox box_;
   NullCollisionCheck null_collisions_;
   Phase phase_;
-  float scale_, emission_scale_;
+  float scale_, emission_scale_;  ///< of coefficients; of the emission, with pbrt-v4's photometric factor
   std::optional<ColorGrid> sigma_a_, sigma_s_, emission_;
-  SpectrumPtr white_;
+  SpectrumPtr white_;  ///< CIE D65, illuminant of the colour space sRGB
   MajorantGrid of_absorption_{kMajorantCells}, of_scattering_{kMajorantCells}, majorants_{kMajorantCells};
 };
 

@@ -4,6 +4,7 @@
 namespace frond {
 namespace {
 
+/// Coefficients are in 1/unit; those of presets are in 1/mm, converted by "scale".
 constexpr Param kHomogeneous[] = {
     kSigmaA,
     kSigmaS,
@@ -16,6 +17,7 @@ constexpr Param kHomogeneous[] = {
      .doc = "Substance that gives both coefficients, for a unit of 1 mm: \"Skin1\", \"Wholemilk\" and others. It "
             "gives the reduced scattering coefficient, (1 - g) sigma_s."}};
 
+/// Returns the coefficients of a preset or of both spectra. Throws InputError if both are given.
 Coefficients coefficients_of(const Params& p) {
   if (!p.given("preset")) return Coefficients(p);
   for (const std::string_view name : {"sigma_a", "sigma_s"})
@@ -40,11 +42,13 @@ class Homogeneous final : public Medium {
     return point;
   }
   MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
+    // The majorant is the extinction coefficient itself: there are no null collisions.
     return {0, ray.t_max, coefficients_.sigma_t(lambda)};
   }
   bool is_homogeneous() const override { return true; }
   bool is_emissive() const override { return emission_ && emission_scale_ > 0; }
   void check(const WavelengthStrategy& wavelengths) const override {
+    // Presets are RGB, whose spectra are defined over the CIE range only.
     if (preset_where_) check_range(kPresetRange_nm, wavelengths, *preset_where_, "preset");
   }
 
@@ -53,9 +57,10 @@ class Homogeneous final : public Medium {
   SpectrumPtr emission_;
   float emission_scale_;
   Phase phase_;
-  std::optional<Location> preset_where_;
+  std::optional<Location> preset_where_;  ///< set if the coefficients are a preset's
 };
 
+/// Leaf area density is in m2/m3 if the scene's unit is the metre.
 constexpr Param kTurbid[] = {
     {.name = "density",
      .kind = ParamKind::real,
@@ -82,6 +87,7 @@ class Turbid final : public Medium {
     SampledSpectrum share;
     const SampledSpectrum r = reflectance_->sample(lambda), t = transmittance_->sample(lambda);
     for (int i = 0; i < lambda.count; ++i) {
+      // Single scattering albedo of a leaf: reflectance plus transmittance (Ross 1981).
       const float albedo = std::min(1.f, r[i] + t[i]);
       point.sigma_a[i] = extinction_ * (1 - albedo), point.sigma_s[i] = extinction_ * albedo;
       share[i] = albedo > 0 ? r[i] / (r[i] + t[i]) : 0;
@@ -99,7 +105,7 @@ class Turbid final : public Medium {
  private:
   static constexpr float kShareSeen = 0.5f;  ///< G of spherical leaf angles
   SpectrumPtr reflectance_, transmittance_;
-  float extinction_;
+  float extinction_;  ///< G times leaf area density, 1/unit; independent of direction and wavelength
 };
 
 }  // namespace

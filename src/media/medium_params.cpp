@@ -9,12 +9,14 @@ namespace frond {
 Coefficients::Coefficients(const Params& p)
     : Coefficients(p.spectrum("sigma_a"), p.spectrum("sigma_s"), find_param(p.info(), "scale") ? p.real("scale") : 1) {}
 
+/// "temperatureoffset" takes precedence over its older name.
 Temperature::Temperature(const Params& p) : scale_(float(p.real("temperaturescale"))) {
   const bool is_old = p.given("temperaturecutoff") && !p.given("temperatureoffset");
   offset_ = float(p.real(is_old ? "temperaturecutoff" : "temperatureoffset"));
 }
 
 SampledSpectrum Temperature::emission(float value, const SampledWavelengths& lambda) const {
+  // Above 1e6 K the shape of a visible spectrum does not change: the Rayleigh-Jeans limit.
   constexpr float kLeast = 100, kMost = 1e6f;  // kelvin
   const float kelvin = (value - offset_) * scale_;
   if (!(kelvin > kLeast)) return {};

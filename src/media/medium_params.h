@@ -8,6 +8,7 @@
 
 namespace frond {
 
+/// Parameters that several media share. "unit" is the scene's unit of length.
 inline constexpr Param kSigmaA{.name = "sigma_a",
                                .kind = ParamKind::unbounded,
                                .default_value = 1.0,
@@ -28,6 +29,7 @@ inline constexpr Param kMeanCosine{.name = "g",
                                    .default_value = 0.0,
                                    .range = {-1, 1},
                                    .doc = "Mean cosine of the phase function (Henyey-Greenstein); above 0: forward."};
+/// The box and the grid of values are in medium space: the space of the directive MakeNamedMedium.
 inline constexpr Param kBoxLow{.name = "p0",
                                .kind = ParamKind::point3,
                                .default_value = std::array<double, 3>{0, 0, 0},
@@ -63,8 +65,11 @@ class Coefficients {
   /// From parameters "sigma_a", "sigma_s" and, if the plug-in declares it, "scale".
   explicit Coefficients(const Params& p);
 
+  /// Absorption coefficient, 1/unit.
   SampledSpectrum sigma_a(const SampledWavelengths& lambda) const { return sigma_a_->sample(lambda) * scale_; }
+  /// Scattering coefficient, 1/unit.
   SampledSpectrum sigma_s(const SampledWavelengths& lambda) const { return sigma_s_->sample(lambda) * scale_; }
+  /// Extinction coefficient, absorption plus scattering, 1/unit.
   SampledSpectrum sigma_t(const SampledWavelengths& lambda) const {
     return (sigma_a_->sample(lambda) + sigma_s_->sample(lambda)) * scale_;
   }
@@ -78,7 +83,9 @@ class Coefficients {
 /// 100 K or less.
 class Temperature {
  public:
+  /// From parameters "temperatureoffset" (or "temperaturecutoff") and "temperaturescale".
   explicit Temperature(const Params& p);
+  /// Returns the spectrum of a blackbody at the temperature (value - offset) scale, K; its maximum is 1.
   SampledSpectrum emission(float value, const SampledWavelengths& lambda) const;
 
  private:

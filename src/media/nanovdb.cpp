@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kMajorantCells = 64;  // along each axis, as in pbrt-v4
 
+/// Coefficients are in 1/unit at density 1.
 constexpr Param kNanoVdb[] = {
     {.name = "filename", .kind = ParamKind::string, .doc = "NanoVDB file.", .required = true},
     {.name = "gridname",
@@ -35,10 +36,11 @@ constexpr Param kNanoVdb[] = {
 
 /// Grids of a file.
 struct Grids {
-  std::unique_ptr<NanoVdbGrid> density, temperature;
-  Bounds bounds;
+  std::unique_ptr<NanoVdbGrid> density, temperature;  ///< temperature may be null
+  Bounds bounds;                                      ///< of both grids, medium space
 };
 
+/// Throws InputError for an unreadable file or a grid that is missing; warns if floats do not resolve its position.
 Grids read_grids(const Params& p) {
   const std::filesystem::path path = p.file("filename");
   const std::string bytes = read_file_bytes(path, p.where("filename"), "NanoVDB file");
@@ -59,6 +61,7 @@ Grids read_grids(const Params& p) {
   }
   const Vec3 size = grids.bounds.max - grids.bounds.min;
   const double reach = double(std::max(largest_coordinate(grids.bounds.min), largest_coordinate(grids.bounds.max)));
+  // Warns if the spacing of floats exceeds 1/4096 of the grid's size.
   if (constexpr double kVisible = 1. / 4096;
       reach > kFar && float_spacing(reach) > kVisible * double(largest_coordinate(size)))
     p.warn("filename",
@@ -85,6 +88,7 @@ class NanoVdb final : public Medium {
     });
   }
 
+  /// Looks up both grids in medium space, where the file's own map applies.
   MediumPoint properties(const Vec3& p, const SampledWavelengths& lambda) const override {
     const Vec3 local = box_.world_to_local(p);
     const float density = grids_.density->at(local);
@@ -93,6 +97,7 @@ class NanoVdb final : public Medium {
       point.emission = point.sigma_a * temperature_.emission(grids_.temperature->at(local), lambda) * emission_scale_;
     return point;
   }
+  /// Majorants of a 64^3 grid over the box of both grids.
   MajorantSteps majorants(const Ray& ray, const SampledWavelengths& lambda) const override {
     return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }

@@ -18,6 +18,7 @@
 namespace frond {
 namespace {
 
+// Levels of the tree of a float grid: nodes of 32^3, 16^3 and 8^3 children or values (Museth 2013 and 2021).
 using Grid = nanovdb::FloatGrid;
 using Tree = Grid::TreeType;
 using Root = Tree::RootType;
@@ -31,6 +32,7 @@ constexpr uint64_t kOldMagic = NANOVDB_MAGIC_NUMBER;  // "NanoVDB0", of files an
 constexpr uint64_t kGridMagic = 0x314244566f6e614e;   // "NanoVDB1"
 constexpr uint64_t kFileMagic = 0x324244566f6e614e;   // "NanoVDB2"
 
+/// NanoVDB accesses nodes in place, so that the memory must have its alignment, 32 bytes.
 constexpr std::align_val_t kAlignment{NANOVDB_DATA_ALIGNMENT};
 struct Free {
   void operator()(std::byte* bytes) const { ::operator delete(bytes, kAlignment); }
@@ -50,12 +52,15 @@ class Bytes {
       reject(fmt::format("it is of version {}.{}.{}, versions {}.x are read", v.getMajor(), v.getMinor(), v.getPatch(),
                          NANOVDB_MAJOR_VERSION_NUMBER));
   }
+  /// True at the end of the file.
   bool empty() const { return bytes_.empty(); }
+  /// Returns the next bytes and advances. Throws InputError if the file is shorter.
   std::string_view take(uint64_t size) {
     const std::string_view taken = next(size);
     bytes_.remove_prefix(size);
     return taken;
   }
+  /// Returns the next value and advances. Its bytes are copied, because they may be unaligned.
   template <class T>
   T take() {
     const T value = next<T>();
@@ -131,6 +136,7 @@ class NodeCheck {
   void check_finite(float v) const {
     if (!std::isfinite(v)) file_.reject("it holds a number that is not finite");
   }
+  /// Checks that the index-to-world matrix and its stored inverse agree to 1 %, as lookups use the inverse.
   void check_map(const nanovdb::Map& map) const {
     constexpr float kRounding = 1e-2f;
     for (const float v : map.mVecF) check_finite(v);
@@ -148,12 +154,14 @@ class NodeCheck {
     return memory_ + sizeof(nanovdb::GridData) + offset;
   }
   template <class Node>
+  /// Returns the nodes of a level, which are contiguous in memory. Throws InputError if they exceed it.
   Level<Node> level(const nanovdb::TreeData<3>& tree, int i) const {
     const uint64_t count = tree.mNodeCount[i];
     if (count == 0) return {nullptr, 0, {}};
     return {reinterpret_cast<const Node*>(at(tree.mNodeOffset[i], count * sizeof(Node))), count,
             std::vector<bool>(count)};
   }
+  /// Checks the table of the root: a tile has a value or the offset of an upper node.
   void check_root(const nanovdb::TreeData<3>& tree, Level<Upper>& uppers) const {
     using Data = Root::DataType;
     const auto& root = *reinterpret_cast<const Data*>(at(tree.mNodeOffset[3], sizeof(Data)));
@@ -168,6 +176,7 @@ class NodeCheck {
     }
   }
   template <class Node, class Child>
+  /// Checks the children and values of an inner node, by its mask.
   void check_node(const Node& node, Level<Child>& children) const {
     const auto& data = *node.data();
     for (uint32_t i = 0; i < Node::SIZE; ++i) {
@@ -188,6 +197,7 @@ class NodeCheck {
   const Bytes& file_;
 };
 
+/// Returns aligned memory. Throws InputError if there is none, as sizes come from the file.
 Memory allocate(uint64_t size, const Bytes& file) {
   try {
     return Memory(static_cast<std::byte*>(::operator new(size, kAlignment)));
@@ -222,6 +232,7 @@ bool inflate_into(std::span<std::byte> to, std::string_view packed) {
   }
 }
 
+/// Returns the grid's bytes. Throws InputError for BLOSC, which is not linked, and for sizes that do not agree.
 Memory unpack(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, const Bytes& file) {
   if (codec == nanovdb::io::Codec::BLOSC)
     file.reject("it is compressed by BLOSC; nanovdb_convert --zip writes one that can be read");
@@ -231,6 +242,7 @@ Memory unpack(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, 
     std::memcpy(memory.get(), packed.data(), size);
     return memory;
   }
+  // Checked before memory is allocated: no stream of this length unpacks to a larger size.
   constexpr uint64_t kMostRatio = 1040;  // deflate's is 1032
   if (packed.size() < sizeof(uint64_t) || size / kMostRatio > packed.size()) file.reject("it is damaged");
   const std::string_view stream = packed.substr(sizeof(uint64_t));
@@ -239,6 +251,7 @@ Memory unpack(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, 
   return memory;
 }
 
+/// Checked grid in its own memory. Lookups are thread-safe: each one has its accessor.
 class LoadedGrid final : public NanoVdbGrid {
  public:
   LoadedGrid(Memory memory, const Bytes& file)
@@ -252,6 +265,7 @@ class LoadedGrid final : public NanoVdbGrid {
         file.reject("its grid is empty");
   }
 
+  /// Trilinear interpolation; negative values count as 0, because a density is not negative.
   float at(const Vec3& p) const override {
     const auto index = grid_.worldToIndexF(nanovdb::Vec3f(p.x, p.y, p.z));
     const auto accessor = grid_.getAccessor();
@@ -283,6 +297,7 @@ class LoadedGrid final : public NanoVdbGrid {
   }
 
  private:
+  /// Indices are clamped to this magnitude, which converts to int without overflow.
   static constexpr float kFarthest = 0x1p30f;
 
   template <class V>
@@ -293,6 +308,7 @@ class LoadedGrid final : public NanoVdbGrid {
   template <class Use>
   void emit(const nanovdb::Coord& origin, int size, float value, const Use& use) const {
     if (!(value > 0)) return;
+    // 0.001 index more than one index beyond the value, for rounding of the transform.
     const float half = float(size - 1) / 2, reach = half + 1.001f;
     const Vec3 middle = vec3(
         grid_.indexToWorldF(nanovdb::Vec3f(float(origin[0]) + half, float(origin[1]) + half, float(origin[2]) + half)));
@@ -325,6 +341,7 @@ class LoadedGrid final : public NanoVdbGrid {
   Bounds bounds_;
 };
 
+/// Unpacks and checks a grid. Throws InputError if it is damaged.
 std::unique_ptr<NanoVdbGrid> load(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, const Bytes& file) {
   Memory memory = unpack(codec, packed, size, file);
   NodeCheck(memory.get(), size, file).check();

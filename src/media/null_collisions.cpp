@@ -24,6 +24,7 @@ Ray ray_through(const Bounds& bounds, RandomStream& rng) {
 /// Paths that scatter meet real collisions, which end the count: where a medium is as dense as its majorant, there are
 /// no null collisions.
 void NullCollisionCheck::check(const Medium& medium, const WavelengthStrategy& wavelengths) const {
+  // Rays and their numbers are fixed, so that the result does not depend on the seed of the render.
   constexpr int kRays = 8;
   constexpr uint64_t kKey = 0x6e756c6c;
   int64_t collisions = 0;
@@ -35,6 +36,7 @@ void NullCollisionCheck::check(const Medium& medium, const WavelengthStrategy& w
     if (!(length(d) > 0)) continue;
     const Ray ray{world_from_medium_.point(in_medium.o), normalize(d)};
     const SampledWavelengths lambda = wavelengths.sample((float(i) + 0.5f) / kRays);
+    // The majorant of the hero wavelength samples distances, as in the integrator.
     const int hero = i % lambda.count;
     SampledSpectrum unused;
     track(medium, ray, lambda, hero, rng.uniform(), rng, poll, unused,

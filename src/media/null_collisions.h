@@ -20,7 +20,7 @@ class NullCollisionCheck {
   void check(const Medium& medium, const WavelengthStrategy& wavelengths) const;
 
  private:
-  Bounds bounds_;
+  Bounds bounds_;  ///< medium space
   Transform world_from_medium_;
   Location where_;
 };

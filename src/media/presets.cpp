@@ -66,6 +66,7 @@ constexpr Substance kSubstances[] = {
 
 }  // namespace
 
+/// The colours are linear sRGB; their spectra may exceed 1, as coefficients are not bounded.
 Coefficients preset_coefficients(std::string_view name, double scale, const Location& where) {
   std::vector<std::string_view> names;
   for (const Substance& s : kSubstances) {

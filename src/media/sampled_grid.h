@@ -15,6 +15,7 @@ namespace frond {
 template <class T>
 class SampledGrid {
  public:
+  /// `values` has n[0] n[1] n[2] elements.
   SampledGrid(std::vector<T> values, const std::array<int, 3>& n) : values_(std::move(values)), n_(n) {}
 
   /// Interpolates `convert(value)` at a position in the box, whose coordinates are 0 to 1 within.
@@ -31,6 +32,7 @@ class SampledGrid {
     }
     return sum;
   }
+  /// The same for a grid of numbers.
   float at(const Vec3& unit) const {
     return at(unit, [](float v) { return v; });
   }
@@ -53,6 +55,7 @@ class SampledGrid {
   }
 
  private:
+  /// In size_t: the product of three ints may exceed 2^31.
   size_t index(size_t x, size_t y, size_t z) const { return x + size_t(n_[0]) * (y + size_t(n_[1]) * z); }
 
   std::vector<T> values_;
