@@ -13,9 +13,12 @@ namespace {
 struct Patch {
   std::array<Vec3d, 4> p;
 
+  /// Point of the surface (pbrt 4th ed., 6.6).
   Vec3d at(double u, double v) const { return along_u(u, 0) * (1 - v) + along_u(u, 2) * v; }
+  /// Partial derivative by u, which depends on v alone; dv depends on u alone.
   Vec3d du(double v) const { return (p[1] - p[0]) * (1 - v) + (p[3] - p[2]) * v; }
   Vec3d dv(double u) const { return (p[2] - p[0]) * (1 - u) + (p[3] - p[1]) * u; }
+  /// Not normalized: its length is the area element for each du dv.
   Vec3d normal(double u, double v) const { return cross(du(v), dv(u)); }
 
  private:
@@ -29,6 +32,8 @@ std::array<double, 2> quadratic_roots(double a, double b, double c) {
   if (c == 0) return {b != 0 ? -a / b : kNone, kNone};
   const double discriminant = b * b - 4 * a * c;
   if (discriminant < 0) return {kNone, kNone};
+  // The sum has no cancellation, because both terms have the same sign; the other root follows from the product of the
+  // roots, a / c.
   const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
   return {q / c, q != 0 ? a / q : kNone};
 }
@@ -52,6 +57,7 @@ class BilinearMesh final : public AnalyticShape {
     for (const uint32_t k : mesh_.patches[i]) bounds.add(mesh_.p[k]);
     return bounds;
   }
+  /// The corners, whose convex hull contains the patch.
   std::vector<Vec3> outline(unsigned i) const override {
     std::vector<Vec3> points;
     for (const uint32_t k : mesh_.patches[i]) points.push_back(mesh_.p[k]);
@@ -130,6 +136,7 @@ class BilinearMesh final : public AnalyticShape {
     const auto [dn_du, dn_dv] = normal_changes(patch, point, du, dv);
     const Vec2 s = (q[1] - q[0]) * (1 - point.at.y) + (q[3] - q[2]) * point.at.y;
     const Vec2 t = (q[2] - q[0]) * (1 - point.at.x) + (q[3] - q[1]) * point.at.x;
+    // Where the map to texture coordinates is singular, the patch's own parameters are used.
     const double det = double(s.x) * double(t.y) - double(s.y) * double(t.x);
     if (det == 0) return {to_float(du), to_float(dv), to_float(dn_du), to_float(dn_dv)};
     const auto along = [&](const Vec3d& a, const Vec3d& b, double x, double y) {
@@ -141,6 +148,7 @@ class BilinearMesh final : public AnalyticShape {
 
  private:
   template <class T>
+  /// Bilinear interpolation of values at the corners (0,0), (1,0), (0,1), (1,1).
   static T interpolate(const std::array<T, 4>& q, Vec2 at) {
     return (q[0] * (1 - at.x) + q[1] * at.x) * (1 - at.y) + (q[2] * (1 - at.x) + q[3] * at.x) * at.y;
   }
@@ -180,6 +188,7 @@ class BilinearMesh final : public AnalyticShape {
       return unit_changes(to_double(shading_normal(point.primitive, point.at)),
                           (n[1] - n[0]) * (1 - v) + (n[3] - n[2]) * v, (n[2] - n[0]) * (1 - u) + (n[3] - n[1]) * u);
     }
+    // Second derivative by u and v; those by u twice and v twice are 0.
     const Vec3d twist = patch.p[0] - patch.p[1] - patch.p[2] + patch.p[3];
     const auto [a, b] = unit_changes(cross(du, dv), cross(du, twist), cross(twist, dv));
     if (flip_) return {-a, -b};
@@ -197,7 +206,7 @@ class BilinearMesh final : public AnalyticShape {
   }
 
   PatchMesh mesh_;
-  bool flip_;
+  bool flip_;  ///< whether the front is opposite to the cross product of the derivatives
 };
 
 constexpr Param kBilinear[] = {
@@ -249,6 +258,7 @@ MadeShape make_bilinear(const Params& p, const ShapePlacement& placement) {
 
 }  // namespace
 
+/// Reversed orientation and a transform that swaps handedness cancel.
 AnalyticShapePtr patches(PatchMesh mesh, const ShapePlacement& placement) {
   const bool flip = placement.reverse_orientation != placement.to_scene.swaps_handedness();
   return std::make_shared<const BilinearMesh>(std::move(mesh), flip);

@@ -12,6 +12,7 @@ namespace {
 /// Control points of a cubic Bezier curve.
 template <class T>
 using CubicT = std::array<Vec3T<T>, 4>;
+// Control points are stored as floats; intersections are computed in double precision.
 using Cubic = CubicT<float>;
 using Cubicd = CubicT<double>;
 
@@ -26,7 +27,9 @@ std::array<Vec3d, 7> split(const Cubicd& c, double t) {
   const Vec3d l = interpolate(a, m, t), r = interpolate(m, b, t);
   return {c[0], a, l, interpolate(l, r, t), r, b, c[3]};
 }
+/// Control points of the curve from 0 to t, of the result of `split`.
 Cubicd first_part(const std::array<Vec3d, 7>& s) { return {s[0], s[1], s[2], s[3]}; }
+/// Control points of the curve from t to 1.
 Cubicd second_part(const std::array<Vec3d, 7>& s) { return {s[3], s[4], s[5], s[6]}; }
 
 /// Returns the tangent, scaled as the derivative by t.
@@ -61,6 +64,7 @@ class Curves final : public AnalyticShape {
         flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()) {
     const Transform::Rows& r = to_scene_.rows();
     const Vec3 x{r[0][0], r[1][0], r[2][0]}, y{r[0][1], r[1][1], r[2][1]}, z{r[0][2], r[1][2], r[2][2]};
+    // Geometric mean of the scale factors along the axes: the cube root of the determinant.
     scale_ = std::cbrt(std::abs(dot(cross(x, y), z)));
   }
 
@@ -146,6 +150,7 @@ class Curves final : public AnalyticShape {
   /// Number of pieces of each Bezier curve, for tighter bounding boxes.
   static constexpr unsigned kPieces = 4;
 
+  /// Part of a segment from u0 to u1, an Embree primitive of its own.
   struct Piece {
     size_t segment;
     double u0, u1;
@@ -171,6 +176,7 @@ class Curves final : public AnalyticShape {
     const Vec3d a = frond::to_double(normals_[segment]), b = frond::to_double(normals_[segment + 1]);
     const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0)), sine = std::sin(angle);
     if (sine < 1e-6) return u < 0.5 ? a : b;
+    // Spherical linear interpolation (Shoemake 1985).
     return (a * std::sin((1 - u) * angle) + b * std::sin(u * angle)) / sine;
   }
 
@@ -191,6 +197,7 @@ class Curves final : public AnalyticShape {
     return depth;
   }
 
+  /// Parameters of a hit: u along the segment, v across the strip, both 0 to 1, and the strip's width there.
   struct CurveHit {
     double u, v, width;
   };
@@ -213,6 +220,7 @@ class Curves final : public AnalyticShape {
       search(second_part(halves), middle, u1, depth - 1);
     }
 
+    /// Whether the ray, along z, may hit the curve, from bounds of its control points enlarged by `radius`.
     bool bounds_overlap(const Cubicd& c, double radius) const {
       const auto [x0, x1] = std::minmax({c[0].x, c[1].x, c[2].x, c[3].x});
       const auto [y0, y1] = std::minmax({c[0].y, c[1].y, c[2].y, c[3].y});

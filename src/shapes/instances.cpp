@@ -16,6 +16,7 @@ constexpr Param kInstances[] = {
             "(the three rows of a matrix) and any other numbers, all of them float32; \"transform\" may be float64.",
      .required = true}};
 
+/// Returns the names of object and table; the scene reads the table.
 MadeShape make_instances(const Params& p, const ShapePlacement&) {
   return ObjectInstances{.object = p.string("object"), .table = p.file("filename")};
 }

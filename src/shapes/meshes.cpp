@@ -93,6 +93,7 @@ MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
     fail(p.where("N"), "{} values of \"N\" for {} of \"P\"", mesh.n.size(), mesh.p.size());
   if (!mesh.uv.empty() && mesh.uv.size() != mesh.p.size())
     fail(p.where("uv"), "{} values of \"uv\" for {} of \"P\"", mesh.uv.size(), mesh.p.size());
+  // Reads parameters that have no effect, so that they are not reported as unknown.
   p.vec3s("S"), p.integers("faceIndices");
   place_corners(mesh.p, mesh.n, placement);
   return std::vector{oriented(std::move(mesh), placement)};
@@ -100,6 +101,7 @@ MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
 
 /// Warns if a file has rounded its vertices: to steps that a leaf's shape shows.
 void warn_of_steps(const Params& p, const PlyMesh& file) {
+  // In scene units, and as a share of the largest extent.
   constexpr double kLargest = 1. / 256, kLargestShare = 1. / 2048;
   if (file.step == 0) return;
   Bounds bounds;

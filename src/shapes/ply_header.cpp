@@ -74,6 +74,7 @@ PlyType type_of(const Word& word) {
   return static_cast<PlyType>((found - std::begin(kNames)) % 8);
 }
 
+/// Encoding of the body. Throws InputError for versions other than 1.0.
 PlyFormat format_of(const std::vector<Word>& line) {
   check_words(line, 3, "format, ascii or binary_little_endian or binary_big_endian, 1.0");
   if (line[2].text != "1.0")
@@ -86,6 +87,7 @@ PlyFormat format_of(const std::vector<Word>& line) {
   return static_cast<PlyFormat>(found - std::begin(kNames));
 }
 
+/// Element without properties, which follow on lines of their own. Throws InputError for an invalid count.
 PlyElement element_of(const std::vector<Word>& line) {
   check_words(line, 3, "element, its name, its count");
   const std::string_view digits = line[2].text;
@@ -109,6 +111,7 @@ PlyProperty property_of(const std::vector<Word>& line) {
   return {std::string(line[2].text), type_of(line[1]), {}, line[0].where};
 }
 
+/// Throws InputError for a name that is declared twice.
 void add_element(PlyHeader& header, PlyElement element) {
   for (const PlyElement& other : header.elements)
     if (other.name == element.name)
@@ -116,6 +119,7 @@ void add_element(PlyHeader& header, PlyElement element) {
   header.elements.push_back(std::move(element));
 }
 
+/// Adds a property to the last element. Throws InputError if there is none or the name is declared twice.
 void add_property(PlyHeader& header, PlyProperty property) {
   if (header.elements.empty()) fail(property.where, "a property before any element");
   auto& properties = header.elements.back().properties;

@@ -37,6 +37,7 @@ class BinarySource {
     return std::all_of(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end(), is_blank);
   }
 
+  /// Rows of a binary body have no delimiters.
   bool start_row() { return true; }
   bool end_row() { return true; }
   /// Reads a value. Returns false if there is none; `problem` returns the reason.
@@ -62,6 +63,7 @@ class BinarySource {
 
  private:
   template <class T>
+  /// Returns the value as double, which represents all PLY types exactly; bytes may be unaligned.
   double load() const {
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
@@ -91,7 +93,7 @@ class BinarySource {
   }
 
   std::string_view bytes_;
-  size_t at_, value_at_;
+  size_t at_, value_at_;  ///< bytes from the start of the file
   bool swap_;
   std::shared_ptr<const std::string> file_;
 };

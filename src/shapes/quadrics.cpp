@@ -18,12 +18,14 @@ class Quadric : public AnalyticShape {
         flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()),
         phi_max_(p.real("phimax") * M_PI / 180) {}
 
+  /// Uniform over the area in object space; `area` corrects for the transform: 1 over the density.
   ShapePoint sample(unsigned, Vec2 u) const final {
     const Sample s = sample_object(u);
     ShapePoint point = s.point;
     point.area = area_at(s.normal);
     return point;
   }
+  /// Area in world space: exact if the transform scales all areas alike, else by the midpoint rule.
   double area(unsigned) const final {
     if (AffineMap{to_scene_.rows()}.area_scale()) return object_area() * stretch({0, 0, 1});
     constexpr int kSteps = 128;
@@ -65,6 +67,7 @@ class Quadric : public AnalyticShape {
     };
     return {to_scene_.vector(to_float(dpdu)), to_scene_.vector(to_float(dpdv)), change(dndu), change(dndv)};
   }
+  /// Object-space coordinates in double precision, because radii may be small compared with positions.
   Vec3d local_point(const Vec3& p) const { return precise_.inverse_point(to_double(p)); }
   Vec3d local_vector(const Vec3& v) const { return precise_.inverse_vector(to_double(v)); }
   /// Bounds of a transformed box.
@@ -90,8 +93,8 @@ class Quadric : public AnalyticShape {
 
   Transform to_scene_;
   PreciseTransform precise_;
-  bool flip_;
-  double phi_max_;
+  bool flip_;       ///< whether the front is opposite to the object-space normal
+  double phi_max_;  ///< radians
 };
 
 /// Sphere around the origin, optionally cut at two heights and at a sweep angle.
@@ -156,7 +159,7 @@ class Sphere final : public Quadric {
         to_scene_point(p), to_scene_normal(p), {float(phi / phi_max()), float((theta - bottom) / (top - bottom))}, t};
   }
 
-  double radius_, z_min_ = 0, z_max_ = 0;
+  double radius_, z_min_ = 0, z_max_ = 0;  ///< object space, z_min_ < z_max_
 };
 
 /// Flat disk at a height, optionally with a hole and a sweep angle.
@@ -220,11 +223,12 @@ class Disk final : public Quadric {
   }
 
  private:
+  /// Returns the point with its parameters, in world space; `r` is the distance from the axis.
   ShapePoint at(const Vec3d& p, double r, double phi, float t) const {
     return {to_scene_point(p), ng_, {float(phi / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t};
   }
 
-  double radius_, inner_, height_;
+  double radius_, inner_, height_;  ///< object space
   Vec3 ng_;
   double area_;
 };
@@ -305,7 +309,7 @@ class Cylinder final : public Quadric {
             t};
   }
 
-  double radius_, z_min_, z_max_;
+  double radius_, z_min_, z_max_;  ///< object space, z_min_ < z_max_
 };
 
 constexpr Param kPhiMax{.name = "phimax",

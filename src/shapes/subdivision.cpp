@@ -73,6 +73,7 @@ class ControlMesh {
   }
 
  private:
+  /// Weight of each neighbour of an interior vertex: Loop 1987, with the weights of Warren 1995, as in pbrt-v4.
   static double beta(size_t valence) { return valence == 3 ? 3. / 16 : 3. / (8 * double(valence)); }
   uint32_t start_of(uint32_t edge) const { return faces_[edge / 3][edge % 3]; }
   uint32_t end_of(uint32_t edge) const { return start_of(next(edge)); }
