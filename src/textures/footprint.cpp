@@ -12,6 +12,7 @@ void keep_shorter(Vec3& shortest, const Vec3& v) {
 Vec2 uv_of(const SurfaceDerivatives& d, const Vec3& step) {
   const float uu = dot(d.dpdu, d.dpdu), uv = dot(d.dpdu, d.dpdv), vv = dot(d.dpdv, d.dpdv);
   const float du = dot(d.dpdu, step), dv = dot(d.dpdv, step), det = uu * vv - uv * uv;
+  // A degenerate parameterization does not filter; the bound keeps products with the change finite.
   const auto bounded = [det](float x) { return std::isfinite(x / det) ? std::clamp(x / det, -1e8f, 1e8f) : 0; };
   return {bounded(vv * du - uv * dv), bounded(uu * dv - uv * du)};
 }
@@ -22,6 +23,7 @@ Footprint::Footprint(const Camera& camera, const CameraPlacement& placement, boo
     : camera_from_world_(placement.world_from_camera.inverse()), is_point_(false) {
   const float pixels = between_samples ? 0.125f : 1.f;
   // Uses the shortest steps over the film, so that textures are sharp rather than blurred.
+  // Rays along the film's diagonal, from corner to corner.
   constexpr int kPlaces = 512;
   const Vec2 lens{0.5f, 0.5f};
   const auto direction = [this](const Ray& ray) { return normalize_any(camera_from_world_.vector(ray.d)); };

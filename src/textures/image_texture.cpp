@@ -15,6 +15,7 @@
 namespace frond {
 namespace {
 
+/// Names of "filter" and "wrap", as in pbrt-v4, which accepts both spellings of EWA.
 constexpr std::string_view kFilters[] = {"bilinear", "point", "trilinear", "ewa", "EWA"};
 constexpr std::string_view kWraps[] = {"repeat", "black", "clamp", "octahedralsphere"};
 
@@ -112,6 +113,7 @@ Image one_channel(const Params& p, const Image& image) {
   if (has_alpha && filter != "point") return image.selected(std::array{*alpha}, {"A"});
   std::array<size_t, 3> rgb{};
   if (image.channels.size() > 2) {
+    // Order of the file's channels is arbitrary in EXR: they are selected by name.
     constexpr std::array kNames{"R", "G", "B"};
     for (size_t c = 0; c < 3; ++c) {
       const auto channel = image.channel(kNames[c]);
@@ -125,8 +127,8 @@ Image one_channel(const Params& p, const Image& image) {
 /// An image file, independent of how textures interpret its values.
 struct LoadedImage {
   MipMap map;
-  Interval values{INFINITY, -INFINITY};
-  bool is_red_alone = false;  ///< three channels, of which only red is used
+  Interval values{INFINITY, -INFINITY};  ///< smallest and largest linear value of all texels
+  bool is_red_alone = false;             ///< three channels, of which only red is used
 
   explicit LoadedImage(MipMap m, bool is_red = false) : map(std::move(m)), is_red_alone(is_red) {
     const int channels = map.channels();
@@ -193,6 +195,7 @@ std::shared_ptr<const LoadedImage> load_shared(const Params& p, SharedWork* shar
   const std::string key =
       fmt::format("image {} {} {} {} {} {}", what, int(o.filter), int(o.wrap), o.max_anisotropy,
                   encoding ? fmt::format("{} {}", int(encoding->curve), encoding->gamma) : "-", path.string());
+  // The key holds all that the texels depend on; scale and inversion are applied by each texture.
   SharedWork own;
   return (shared ? *shared : own).get<LoadedImage>(key, [&] { return load(p, encoding); });
 }
@@ -208,6 +211,7 @@ class ImageFloat final : public FloatTexture {
                                    p.string("filter")));
     set_range(p);
   }
+  /// Filtered value, scaled and inverted.
   float evaluate(const TexturePoint& at) const override { return scaling_(image_->map.at(mapping_.at(at))[0]); }
   Interval range() const override { return range_; }
   bool needs_details() const override { return true; }
@@ -246,10 +250,12 @@ class ImageSpectrum final : public SpectrumTexture {
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     return table_.sample(color(image_->map.at(mapping_.at(at))), lambda);
   }
+  /// The spectra are defined over the range of the CIE observer, nm.
   Interval range_nm() const override { return {360, 830}; }
   /// Computed on first use, because it needs all texels.
   float max_value() const override {
     std::call_once(max_found_, [this] {
+      // Runs of equal texels are common; a lookup of the maximum is slower than a comparison.
       Float4 last{-1, 0, 0, 0};
       image_->map.for_each_texel([&](Float4 v) {
         if (are_equal(v, last)) return;
@@ -264,6 +270,7 @@ class ImageSpectrum final : public SpectrumTexture {
   bool needs_details() const override { return true; }
 
  private:
+  /// Scaled linear sRGB, clamped to [0, 1], because a reflectance conserves energy.
   Float4 color(Float4 v) const { return clamped_to_unit(scaling_(v)); }
 
   TextureMapping mapping_;
@@ -271,7 +278,7 @@ class ImageSpectrum final : public SpectrumTexture {
   std::shared_ptr<const LoadedImage> image_;
   const ReflectanceTable& table_;
   mutable std::once_flag max_found_;
-  mutable float max_ = 0;
+  mutable float max_ = 0;  ///< largest reflectance over texels and wavelengths; valid after max_found_
 };
 
 constexpr Param kImageMap[] = {
@@ -305,6 +312,7 @@ constexpr Param kImageMap[] = {
      .default_value = false,
      .doc = "Use one minus the scaled value, clamped to 0."},
 };
+/// Parameters of both textures: those of the image and of the mapping.
 constexpr auto kImageParams = with_mapping(kImageMap);
 
 template <class Base, class T>

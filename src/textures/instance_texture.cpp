@@ -31,7 +31,7 @@ class InstanceTexture final : public FloatTexture {
  private:
   std::string column_;
   Interval range_;
-  double elsewhere_;
+  double elsewhere_;  ///< value where no instance has the column
 };
 
 constexpr Param kInstanceTexture[] = {

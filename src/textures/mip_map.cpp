@@ -37,6 +37,7 @@ std::vector<Share> shares(int from, int to) {
   return all;
 }
 
+/// Largest magnitude of a component.
 float max_component(Vec2 v) { return std::max(std::abs(v.x), std::abs(v.y)); }
 float length_of(Vec2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
@@ -71,6 +72,7 @@ MipMap::MipMap(const Image& image, const ColorEncoding& encoding, bool eight_bit
   if (eight_bit) {
     level.bytes.reserve(image.pixels.size());
     for (const float v : image.pixels) level.bytes.push_back(uint8_t(std::lround(std::clamp(v, 0.f, 1.f) * 255)));
+    // A table replaces the decoding of each lookup, since a byte has 256 values.
     for (int i = 0; i < 256; ++i) decoded_.push_back(encoding.decode(float(i) / 255));
   } else {
     level.values.reserve(image.pixels.size());
@@ -81,6 +83,7 @@ MipMap::MipMap(const Image& image, const ColorEncoding& encoding, bool eight_bit
     }
   }
   levels_.push_back(std::move(level));
+  // Sizes are halved and rounded down to a last level of one texel.
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));
 }
 
@@ -123,8 +126,8 @@ Float4 MipMap::texel(const Level& level, int x, int y) const {
       case Wrap::repeat:
         x = modulo(x, w), y = modulo(y, h);
         break;
-      case Wrap::octahedral_sphere:  // beyond an edge comes the same edge, from its other end  ///< beyond an edge the
-                                     // same edge continues in reverse direction
+      case Wrap::octahedral_sphere:
+        // Beyond an edge, the same edge continues in reverse direction.
         if (x < 0 || x >= w) x = x < 0 ? -x - 1 : 2 * w - 1 - x, y = h - 1 - y;
         if (y < 0 || y >= h) y = y < 0 ? -y - 1 : 2 * h - 1 - y, x = w - 1 - x;
         [[fallthrough]];
@@ -171,6 +174,7 @@ Float4 MipMap::filtered(const TextureCoordinates& place) const {
     return texel(l, int(std::floor(place.st.x * float(l.width))), int(std::floor(place.st.y * float(l.height))));
   }
   if (options_.filter == Filter::bilinear || at == 0) return bilinear(levels_[at], place.st);
+  // Trilinear: interpolates linearly between two levels (Williams 1983).
   const float t = level - float(at);
   return (1 - t) * bilinear(levels_[at], place.st) + t * bilinear(levels_[at + 1], place.st);
 }
@@ -195,6 +199,7 @@ Float4 MipMap::ellipse(size_t index, Vec2 st, Vec2 p, Vec2 q) const {
   if (index >= levels_.size()) return value(levels_.back(), 0);
   const Level& level = levels_[index];
   const float w = float(level.width), h = float(level.height), x = st.x * w - 0.5f, y = st.y * h - 0.5f;
+  // Coefficients of the implicit ellipse of the level, in texels; 1 is the variance of the reconstruction filter.
   const float xx = w * w * (p.x * p.x + q.x * q.x) + 1, yy = h * h * (p.y * p.y + q.y * q.y) + 1;
   const float xy = w * h * (p.x * p.y + q.x * q.y), determinant = xx * yy - xy * xy;
   const float reach_x = std::sqrt(xx), reach_y = std::sqrt(yy);

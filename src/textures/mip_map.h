@@ -11,9 +11,11 @@ namespace frond {
 
 /// Conversion of an image file's values to linear values.
 struct ColorEncoding {
+  /// As parameter "encoding" of pbrt-v4: identity, the sRGB transfer function, or a power law.
   enum class Curve : uint8_t { linear, srgb, power };
   Curve curve = Curve::linear;
   float gamma = 1;  ///< exponent of `power`
+  /// Returns the linear value of an encoded one, both nominally 0 to 1.
   float decode(float v) const;
 };
 
@@ -21,12 +23,14 @@ struct ColorEncoding {
 /// of any size.
 class MipMap {
  public:
+  /// Reconstruction between texels and levels: pbrt 4th ed., 10.4.3; ewa: the elliptically weighted average.
   enum class Filter : uint8_t { point, bilinear, trilinear, ewa };
+  /// Values beyond the edges; octahedral_sphere continues across an edge as the equal-area map of a sphere does.
   enum class Wrap : uint8_t { repeat, black, clamp, octahedral_sphere };
   struct Options {
     Filter filter = Filter::bilinear;
     Wrap wrap = Wrap::repeat;
-    float max_anisotropy = 8;
+    float max_anisotropy = 8;  ///< largest ratio of the ellipse's axes, at least 1
   };
 
   MipMap() = default;
@@ -35,6 +39,7 @@ class MipMap {
 
   /// Returns filtered linear values. v increases upward; the image's rows run down.
   Float4 at(const TextureCoordinates& place) const;
+  /// 1 or 3.
   int channels() const { return channels_; }
   /// Calls use(values) for each texel of the finest level.
   template <class Use>
@@ -44,6 +49,7 @@ class MipMap {
   }
 
  private:
+  /// Image of one level, row by row from the top, channels interleaved.
   struct Level {
     int width = 0, height = 0;
     std::vector<uint8_t> bytes;  ///< encoded; empty: `values` is used

@@ -36,6 +36,7 @@ class BumpMap final : public NormalBend {
     const Vec3 n = hit.shading.z, u = tangential(hit.derivatives.dpdu, n), v = tangential(hit.derivatives.dpdv, n);
     const float height = displacement_->evaluate(hit.at);
     const auto slope = [&](float dx, float dy, const Vec3& dp, Vec2 direction) {
+      // Without a footprint, the step is pbrt-v4's, in units of (u, v).
       constexpr float kLeastStep = 0.0005f;
       const float half = 0.5f * (std::abs(dx) + std::abs(dy)),
                   step = half > 0 && std::isfinite(half) ? half : kLeastStep;
@@ -108,6 +109,7 @@ class BentBsdf final : public Bsdf {
     s->wi = wi;
     return s;
   }
+  /// Solid angle is invariant under rotation: densities need no correction.
   float pdf(const Vec3& wo, const Vec3& wi) const override {
     return bsdf_.pdf(to_bent_.to_world(wo), to_bent_.to_world(wi));
   }
@@ -129,6 +131,7 @@ class BentMaterial final : public Material {
   BentMaterial(std::shared_ptr<Material> material, std::shared_ptr<const NormalBend> bend)
       : material_(std::move(material)), bend_(std::move(bend)) {}
   void prepare(const Preparation& preparation) override { material_->prepare(preparation); }
+  /// The BSDF's frame is that of the hit before it was bent, as the caller expects.
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     Hit bent = hit;
     bend_->bend(bent);

@@ -8,6 +8,7 @@ namespace frond {
 class NormalBend {
  public:
   virtual ~NormalBend() = default;
+  /// Sets the shading frame and the derivatives dpdu and dpdv; leaves the hit unchanged where they are degenerate.
   virtual void bend(Hit& hit) const = 0;
 };
 

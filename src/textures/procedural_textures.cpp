@@ -14,6 +14,7 @@ namespace {
 
 // ---- Mixtures of two textures ----
 
+/// Smallest interval that contains both.
 Interval interval_union(const Interval& a, const Interval& b) {
   return {std::min(a.min, b.min), std::max(a.max, b.max)};
 }
@@ -86,9 +87,11 @@ class Checkerboard {
   }
 
  private:
+  /// Converts 1 to share 0 and -1 to share 1; clamped for rounding of the filter.
   static float share(float sign) { return std::clamp(0.5f - 0.5f * sign, 0.f, 1.f); }
   /// Filtered square wave: 1 from an even number to the next, else -1.
   static float filtered_square_wave(float x, float dx, float dy) {
+    // A tent is a box convolved with a box, so that the filtered wave is a second difference of its second integral.
     const float radius = 1.5f * std::max(std::abs(dx), std::abs(dy)), cell = std::floor(x);
     if (!std::isfinite(x) || !std::isfinite(radius)) return 0;
     const float in_period = x - 2 * std::floor(x / 2);
@@ -120,6 +123,7 @@ class Dots {
   float second_share(const TexturePoint& point) const {
     const Vec2 st = mapping_.at(point).st;
     const float s = std::floor(st.x + 0.5f), t = std::floor(st.y + 0.5f);
+    // Dots do not cross the borders of their cells: radius plus largest shift is half a cell.
     constexpr float kRadius = 0.35f, kShift = 0.5f - kRadius, kZ = 0.5f;
     const auto noise = [&](float ds, float dt) { return perlin_noise({s + ds, t + dt, kZ}); };
     if (!(noise(0.5f, 0.5f) > 0)) return 0;
@@ -147,7 +151,7 @@ class DirectionMix {
   }
 
  private:
-  Vec3 direction_;
+  Vec3 direction_;  ///< world space, unit
 };
 
 // ---- Interpolation of four corners ----
@@ -211,6 +215,7 @@ class BilerpSpectrum final : public SpectrumTexture {
 // ---- Noise ----
 
 /// Parameters of a noise sum.
+/// `gain` is the ratio of amplitudes of consecutive octaves.
 struct Octaves {
   float gain;
   int count;
@@ -218,6 +223,7 @@ struct Octaves {
 };
 
 /// Fractal Brownian motion.
+/// Octaves of the noise of Perlin 2002, "Improving Noise". The range is a bound, the sum of the amplitudes.
 class Fbm final : public FloatTexture {
  public:
   Fbm(const Params& p, const TexturePlacement& placement) : mapping_(placement), octaves_(p) {}
@@ -261,6 +267,7 @@ class Windy final : public FloatTexture {
   Windy(const Params&, const TexturePlacement& placement) : mapping_(placement) {}
   float evaluate(const TexturePoint& point) const override {
     const SolidCoordinates at = mapping_.at(point);
+    // Gusts have a tenth of the frequency of the waves, as in pbrt-v4.
     constexpr float kGusts = 0.1f;
     const float wind = fractal_noise({kGusts * at.p, kGusts * at.dp_dx, kGusts * at.dp_dy}, kGain, kGustOctaves);
     return std::abs(wind) * fractal_noise(at, kGain, kWaveOctaves);
@@ -316,6 +323,7 @@ class Marble final : public SpectrumTexture {
     const float x = t * kCurves - float(first), y = 1 - x;
     const Float4* c = &kColors[size_t(first)];
     const Float4 sum = y * y * y * c[0] + 3 * y * y * x * c[1] + 3 * y * x * x * c[2] + x * x * x * c[3];
+    // pbrt-v4's factor; the largest component of the colours is 0.6, so that the result is at most 0.9.
     return 1.5f * sum;
   }
 

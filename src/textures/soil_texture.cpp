@@ -7,6 +7,7 @@
 namespace frond {
 namespace {
 
+/// Choices of "soil", in the order of kSoils.
 constexpr auto kSoilNames = [] {
   std::array<std::string_view, std::size(kSoils)> names;
   for (size_t i = 0; i < names.size(); ++i) names[i] = kSoils[i].name;
@@ -34,6 +35,7 @@ constexpr Param kParams[] = {
      .doc = "Water in the soil, films of which darken it (BSM, Verhoef et al. 2018); none up to 5 %.",
      .quantity = PhysicalQuantity::soil_moisture}};
 
+/// Returns the soil of the one source given. Throws InputError if two are given or a list has the wrong length.
 Soil make_soil(const Params& p) {
   constexpr std::string_view kSources[] = {"soil", "coefficients", "reflectance"};
   std::string_view source = kSources[0], first;
@@ -62,6 +64,7 @@ class SoilTexture final : public SpectrumTexture {
       : soil_(make_soil(p)),
         range_nm_(p.given("reflectance") ? p.spectrum("reflectance")->range_nm() : Soil::kRange_nm),
         moisture_(p.float_texture("moisture")) {}
+  /// Reflectance, 0 to 1, with moisture in % of the volume.
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     const float moisture = moisture_->evaluate(at);
     SampledSpectrum reflectance;
@@ -73,7 +76,7 @@ class SoilTexture final : public SpectrumTexture {
 
  private:
   Soil soil_;
-  Interval range_nm_;
+  Interval range_nm_;  ///< of the data, nm
   std::shared_ptr<const FloatTexture> moisture_;
 };
 

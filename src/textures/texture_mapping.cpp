@@ -18,11 +18,13 @@ TextureCoordinates TextureMapping::of_point(const TexturePoint& point) const {
   const Vec3 p = texture_from_world_.point(point.p);
   Vec2 st;
   Vec3 ds, dt;  // gradients
+  // Formulas of pbrt (4th ed., 10.2), with analytic gradients.
   if (kind_ == Kind::planar) {
     ds = v1_, dt = v2_;
     st = Vec2{dot(p, v1_), dot(p, v2_)} + delta_;
   } else {
     const float square = p.x * p.x + p.y * p.y, radius = std::sqrt(square), turn = 0.5f * kInvPi;
+    // On the axis the azimuth has no gradient: it is taken as 0, without filtering.
     const bool on_axis = !(square > 0);
     const float phi = std::atan2(p.y, p.x);
     const Vec3 around = on_axis ? Vec3{} : Vec3{-p.y, p.x, 0} * (turn / square);

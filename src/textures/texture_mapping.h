@@ -10,7 +10,7 @@ namespace frond {
 
 /// 2D texture coordinates and their derivatives over the footprint.
 struct TextureCoordinates {
-  Vec2 st, dst_dx, dst_dy;
+  Vec2 st, dst_dx, dst_dy;  ///< coordinates; their changes along x and y of the film
 };
 
 /// 2D texture mapping: by the surface's (u, v), or by the point in texture space.
@@ -19,6 +19,7 @@ class TextureMapping {
   TextureMapping(const Params& p, const TexturePlacement& placement);
   /// Whether the mapping needs the point; mapping uv needs it only for filtering.
   bool needs_point() const { return kind_ != Kind::uv; }
+  /// Returns the coordinates of a point, and their changes over its footprint.
   TextureCoordinates at(const TexturePoint& point) const;
 
  private:

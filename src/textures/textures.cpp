@@ -48,7 +48,7 @@ class ScaleSpectrum final : public SpectrumTexture {
  private:
   std::shared_ptr<const SpectrumTexture> tex_;
   std::shared_ptr<const FloatTexture> scale_;
-  bool is_clamped_ = false;
+  bool is_clamped_ = false;  ///< whether the bounds of the factors allow products outside [0, 1]
 };
 
 /// Linear interpolation of two float textures; as in pbrt-v4, amounts outside [0, 1] extrapolate.
@@ -108,9 +108,10 @@ class MixSpectrum final : public SpectrumTexture {
  private:
   std::shared_ptr<const SpectrumTexture> a_, b_;
   std::shared_ptr<const FloatTexture> amount_;
-  bool extrapolates_;
+  bool extrapolates_;  ///< whether the range of the amount exceeds [0, 1]
 };
 
+/// A constant needs no texture mapping.
 std::unique_ptr<FloatTexture> make_constant_float(const Params& p, const TexturePlacement&) {
   return std::make_unique<ConstantFloatTexture>(float(p.real("value")));
 }
