@@ -46,7 +46,7 @@ class Ball {
       : pool_(1), registry_(builtin_registry()), scene_(described(medium), registry_, pool_, silent_log()) {}
   RenderStatistics render_all() {
     Film film({.settings = scene_.film()});
-    return render(job_of(scene_), plan_of(film, {0, PathBundle::kMost}), film, pool_);
+    return render(job_of(scene_), plan_of(film, {0, PathBundle::kSize}), film, pool_);
   }
   const Medium& medium() const { return *scene_.medium_interfaces()[0].inside; }
   SampledWavelengths lambda() const { return scene_.wavelengths().sample(0.5f); }

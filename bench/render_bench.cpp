@@ -85,7 +85,7 @@ struct LoadedScene {
     apply_overrides({.swaps = std::move(swaps), .wavelengths = "smpte"}, d, registry, log);
     return d;
   }
-  RenderJob job(const World& world) const {
+  RenderInputs job(const World& world) const {
     return {world, scene.integrator(), scene.filter(), scene.camera_sampling()};
   }
   /// An empty film for a render.

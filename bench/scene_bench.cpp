@@ -29,8 +29,8 @@ class Meter {
 
   void add_bundle() {
     const RenderStatistics s =
-        render(job_of(scene_), plan_of(film_, {samples_, samples_ + PathBundle::kMost}), film_, pool_);
-    samples_ += PathBundle::kMost;
+        render(job_of(scene_), plan_of(film_, {samples_, samples_ + PathBundle::kSize}), film_, pool_);
+    samples_ += PathBundle::kSize;
     paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
   }
   double seconds_per_path() const { return cpu_seconds_ / paths_; }

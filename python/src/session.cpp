@@ -134,7 +134,7 @@ void bind_session(nb::module_& m) {
              Image image;
              {
                const nb::gil_scoped_release release;
-               image = film_image(p.part.film, finished_image(p.part));
+               image = film_image(p.part.film, finished_format(p.part));
              }
              return arrays_of(std::move(image));
            })
@@ -145,7 +145,7 @@ void bind_session(nb::module_& m) {
              return std::pair(count.least, count.most);
            })
       .def("statistics", [](const ImageHandle& p) { return statistics_of(p.part.header.statistics); })
-      .def("attributes", [](const ImageHandle& p) { return finished_image(p.part).attributes; })
+      .def("attributes", [](const ImageHandle& p) { return finished_format(p.part).attributes; })
       .def_prop_ro("color_space", [](const ImageHandle& p) { return p.part.header.image.space; })
       .def(
           "save",
@@ -153,7 +153,7 @@ void bind_session(nb::module_& m) {
             const nb::gil_scoped_release release;
             const ImageOutput output(path, {});
             output.check(p.scene->task.scene().image_format());
-            output.write(p.part.film, finished_image(p.part));
+            output.write(p.part.film, finished_format(p.part));
           },
           "path"_a)
       .def(

@@ -12,7 +12,7 @@ namespace {
 uint32_t whole_packets(uint32_t wanted) {
   constexpr uint32_t kPacket = (1u << RayPacket::kWidth) - 1;
   uint32_t lanes = 0;
-  for (uint32_t packet = kPacket; packet < 1u << PathBundle::kMost; packet <<= RayPacket::kWidth)
+  for (uint32_t packet = kPacket; packet < 1u << PathBundle::kSize; packet <<= RayPacket::kWidth)
     if (wanted & packet) lanes |= packet;
   return lanes;
 }
@@ -33,8 +33,8 @@ CameraSamples::CameraSamples(const CameraSampling& sampling, const Filter* filte
   if (has_fixed_wavelengths_) bundle_.lambda.fill(sampling.wavelengths.sample(0));
 }
 
-void CameraSamples::make(PixelPosition pixel, uint64_t first, uint32_t wanted, uint64_t turn) {
-  constexpr size_t kMost = PathBundle::kMost;
+void CameraSamples::make(PixelPosition pixel, uint64_t first, uint32_t wanted, uint64_t first_wavelength_index) {
+  constexpr size_t kMost = PathBundle::kSize;
   const Camera& camera = sampling_.camera;
   const Sampler& sampler = sampling_.sampler;
   PathBundle& b = bundle_;
@@ -64,7 +64,8 @@ void CameraSamples::make(PixelPosition pixel, uint64_t first, uint32_t wanted, u
       positions_[i] = {{in_pixel[i].x - 0.5f, in_pixel[i].y - 0.5f}, 1};
     const Vec2 offset = positions_[i].offset;
     on_film[i] = {float(pixel.x) + 0.5f + offset.x, float(pixel.y) + 0.5f + offset.y};
-    if (!has_fixed_wavelengths_) b.lambda[i] = sampling_.wavelengths.sample_for_index(turn + i, on_spectrum[i]);
+    if (!has_fixed_wavelengths_)
+      b.lambda[i] = sampling_.wavelengths.sample_for_index(first_wavelength_index + i, on_spectrum[i]);
     b.keys[i] = sample_key(seed, pixel.x, pixel.y, first + i);
   }
   for (size_t i = 0; i < kMost; i += RayPacket::kWidth)

@@ -39,9 +39,9 @@ class CameraSamples {
   /// this object.
   CameraSamples(const CameraSampling& sampling, const Filter* filter);
 
-  /// Sets the bundle to the samples `first` to `first + PathBundle::kMost - 1` of a pixel. `wanted`: as in PathBundle.
-  /// `turn`: index of the first sample for WavelengthStrategy::sample_for_index.
-  void make(PixelPosition pixel, uint64_t first, uint32_t wanted, uint64_t turn);
+  /// Sets the bundle to the samples `first` to `first + PathBundle::kSize - 1` of a pixel. `wanted`: as in PathBundle.
+  /// `first_wavelength_index`: index of the first sample for WavelengthStrategy::sample_for_index.
+  void make(PixelPosition pixel, uint64_t first, uint32_t wanted, uint64_t first_wavelength_index);
   void make(PixelPosition pixel, uint64_t first, uint32_t wanted) { make(pixel, first, wanted, first); }
 
   PathBundle& bundle() { return bundle_; }
@@ -53,7 +53,7 @@ class CameraSamples {
   const Filter* filter_;
   bool has_fixed_wavelengths_;
   PathBundle bundle_;
-  std::array<Filter::Sample, PathBundle::kMost> positions_;
+  std::array<Filter::Sample, PathBundle::kSize> positions_;
 };
 
 }  // namespace frond

@@ -9,7 +9,7 @@ class OnePathTracer final : public Tracer {
 
   void trace(PathBundle& bundle) override {
     const PixelSamples& s = bundle.samples;
-    for (size_t i = 0; i < PathBundle::kMost; ++i) {
+    for (size_t i = 0; i < PathBundle::kSize; ++i) {
       if (!(bundle.wanted >> i & 1)) continue;
       const SampleNumbers numbers(bundle.sampler, s.x, s.y, s.first + i, bundle.dimension);
       PathContext context{numbers, bundle.keys[i], arena_};

@@ -48,7 +48,7 @@ struct SurfaceError : std::runtime_error {
 struct PathResult {
   SampledSpectrum radiance;
   FirstHit first;
-  int scatterings = 0;     ///< number of scatterings; of the first path where the first hit scatters two rays
+  int scatterings = 0;     ///< number of scatterings; if the first hit scatters two rays, along the first
   bool escaped = false;    ///< that path left the scene; otherwise it was absorbed or terminated
   PlugInFault fault = {};  ///< the last one on the path
 
@@ -70,20 +70,20 @@ struct PathResult {
   }
 };
 
-/// Samples of one pixel that are traced together. The first sample index of a bundle is a multiple of `kMost`.
+/// Samples of one pixel that are traced together. The first sample index of a bundle is a multiple of `kSize`.
 struct PathBundle {
-  static constexpr int kMost = 16;
-  static_assert(kMost % RayPacket::kWidth == 0);
+  static constexpr int kSize = 16;
+  static_assert(kSize % RayPacket::kWidth == 0);
 
   const Sampler& sampler;
   uint32_t dimension = uint32_t(Dimension::light);  ///< first unused dimension of the sampler
-  PixelSamples samples{};                           ///< kMost samples
+  PixelSamples samples{};                           ///< kSize samples
   uint32_t lanes = 0;                               ///< bit i is set if sample i has a camera ray
   uint32_t wanted = 0;  ///< bit i is set if the result of sample i is needed; a subset of `lanes`
-  std::array<Ray, kMost> rays{};
-  std::array<SampledWavelengths, kMost> lambda{};
-  std::array<uint64_t, kMost> keys{};  ///< keys of the paths' random streams (sample_key)
-  std::array<PathResult, kMost> results{};
+  std::array<Ray, kSize> rays{};
+  std::array<SampledWavelengths, kSize> lambda{};
+  std::array<uint64_t, kSize> keys{};  ///< keys of the paths' random streams (sample_key)
+  std::array<PathResult, kSize> results{};
   int albedo_samples = 0;  ///< samples of the BSDF for FirstHit::albedo; 0: it is not needed
   uint64_t traced = 0;     ///< number of rays traced, including shadow rays
 };

@@ -47,9 +47,9 @@ class WavelengthStrategy {
   virtual ~WavelengthStrategy() = default;
   /// Wavelengths of one path for a uniform u in [0, 1).
   virtual SampledWavelengths sample(float u) const = 0;
-  /// Wavelengths of sample `index` of a pixel, with SampledWavelengths::hero if one lane's wavelength alone has all of
-  /// the distribution of `sample`. A strategy with more bands than a path has lanes assigns them in turn:
-  /// consecutive samples cover all bands evenly.
+  /// Wavelengths of sample `index` of a pixel. Sets SampledWavelengths::hero if that lane alone has the distribution of
+  /// `sample`. A strategy with more bands than a path has lanes assigns them in turn: consecutive samples cover all
+  /// bands evenly.
   virtual SampledWavelengths sample_for_index([[maybe_unused]] uint64_t index, float u) const { return sample(u); }
   /// Interval that contains all wavelengths that `sample` can return (nm).
   virtual Interval range_nm() const = 0;

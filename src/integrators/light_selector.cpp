@@ -50,21 +50,21 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
       entries.push_back({uint32_t(i), *bounds, power});
       continue;
     }
-    everywhere_.push_back(i);
+    outside_tree_.push_back(i);
     sum += weights.emplace_back(by_place ? irradiance(*lights_[i], power, double(world.radius())) : power);
   }
-  if (count_ == 1) only_ = lights_[everywhere_.front()];
+  if (count_ == 1) only_ = lights_[outside_tree_.front()];
   tree_ = LightTree(std::move(entries));
   irradiance_ = float(sum);
   double before = 0;
-  for (size_t i = 0; i < everywhere_.size(); ++i) {
-    probability_[everywhere_[i]] = float(weights[i] / sum);
+  for (size_t i = 0; i < outside_tree_.size(); ++i) {
+    probability_[outside_tree_[i]] = float(weights[i] / sum);
     cumulative_.push_back(float(before += weights[i] / sum));
   }
 }
 
 float LightSelector::tree_share(const LitPoint& point) const {
-  if (everywhere_.empty()) return 1;
+  if (outside_tree_.empty()) return 1;
   const float importance = tree_.importance(point.p, point.n);
   return importance / (importance + irradiance_);
 }
@@ -86,7 +86,7 @@ std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPo
   const size_t last = cumulative_.size() - 1;
   size_t i = last == 0 ? 0 : size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), u) - cumulative_.begin());
   i = std::min(i, last);
-  const size_t place_of_light = everywhere_[i];
+  const size_t place_of_light = outside_tree_[i];
   const float before = i == 0 ? 0 : cumulative_[i - 1], own = probability_[place_of_light];
   u = std::clamp((u - before) / own, 0.f, 0x1.fffffep-1f);
   return Choice{lights_[place_of_light], share * own};

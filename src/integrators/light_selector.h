@@ -41,13 +41,13 @@ class LightSelector {
   /// no ray can hit.
   bool has_extent() const { return has_extent_; }
   /// Draws a light by `u` in [0, 1); nothing if no light reaches the point. Afterwards `u` is a number in [0, 1) for a
-  /// sample of this light: numbers that are evenly spread over all lights remain so for each light. The choice uses up
-  /// some of the 24 bits of `u`; `fine` in [0, 1) replaces them.
-  std::optional<Choice> choose(const LitPoint& point, float& u, float fine) const {
+  /// sample of this light: numbers that are evenly spread over all lights remain so for each light. The choice consumes
+  /// the high bits of the 24 of `u`; `low_bits`, a second number in [0, 1), supplies low ones.
+  std::optional<Choice> choose(const LitPoint& point, float& u, float low_bits) const {
     if (count_ == 1) return Choice{only_, 1};
     const auto choice = choose_among_all(point, u);
     if (choice) {
-      const float rest = u + fine * 0x1p-24f / choice->probability;
+      const float rest = u + low_bits * 0x1p-24f / choice->probability;
       u = rest - std::floor(rest);
     }
     return choice;
@@ -65,10 +65,10 @@ class LightSelector {
   const Light* only_ = nullptr;       ///< the light, if that number is one
   bool has_extent_ = false;
   LightTree tree_;
-  std::vector<size_t> everywhere_;  ///< indices of lights whose probability does not depend on the point
-  std::vector<float> cumulative_;   ///< cumulative probabilities of these among each other
-  std::vector<float> probability_;  ///< the same by light, not cumulative; 0 for others
-  float irradiance_ = 0;            ///< sum of these lights' irradiances
+  std::vector<size_t> outside_tree_;  ///< indices of lights whose probability does not depend on the point
+  std::vector<float> cumulative_;     ///< cumulative probabilities of these among each other
+  std::vector<float> probability_;    ///< the same by light, not cumulative; 0 for others
+  float irradiance_ = 0;              ///< sum of these lights' irradiances
 };
 
 }  // namespace frond

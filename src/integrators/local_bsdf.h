@@ -32,7 +32,7 @@ class LocalBsdf {
     Vec3 wi;                 ///< world space
     SampledSpectrum weight;  ///< f |cos theta_i| / pdf
     float pdf;               ///< 1/sr, for MIS with light sampling
-    float power_factor;      ///< eta^2: the factor by which refraction has divided the weight
+    float eta_scale;         ///< eta^2: the factor by which refraction has divided the weight
     bool is_specular;
   };
   /// Samples a direction into `sample`; returns false if nothing is scattered.
@@ -41,7 +41,7 @@ class LocalBsdf {
     if (!s) return false;
     sample.wi = frame_.to_world(s->wi);
     sample.weight = s->f * (std::abs(s->wi.z) / s->pdf);
-    sample.power_factor = s->eta * s->eta;
+    sample.eta_scale = s->eta * s->eta;
     sample.is_specular = any(s->flags & Lobes::specular);
     sample.pdf = s->pdf_is_approximate && !sample.is_specular ? bsdf_->pdf(wo_, s->wi) : s->pdf;
     return true;

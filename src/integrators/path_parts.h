@@ -58,7 +58,7 @@ inline bool survives_roulette(float value, float full, RandomStream& random, Sam
 /// Returns `act()`, which calls plug-ins at a surface. An exception of theirs becomes a SurfaceError with the material
 /// of the surface. Calls may be nested: the innermost names the surface.
 template <class Act>
-auto call_plugins_at(const SurfacePoint& point, const Act& act) {
+auto name_material_in_errors(const SurfacePoint& point, const Act& act) {
   try {
     return act();
   } catch (const SurfaceError&) {
@@ -98,17 +98,17 @@ inline bool is_unit(const Vec3& direction) {
 }
 
 /// Whether a BSDF may return this sample.
-inline bool is_possible(const LocalBsdf::Sample& sample) {
+inline bool is_valid_sample(const LocalBsdf::Sample& sample) {
   return sample.weight.is_physical() && sample.pdf > 0 && is_unit(sample.wi);
 }
 
 /// The same for scattered light.
-inline bool is_possible(const Scattered& light) {
+inline bool is_valid_sample(const Scattered& light) {
   return light.weight.is_physical() && (light.weight.is_black() || is_unit(light.direction));
 }
 
 /// Whether a light may return this sample.
-inline bool is_possible(const LightSample& sample) {
+inline bool is_valid_sample(const LightSample& sample) {
   return sample.radiance.is_physical() && sample.pdf > 0 && sample.pdf < INFINITY && sample.distance > 0 &&
          is_unit(sample.wi);
 }

@@ -26,7 +26,7 @@ constexpr double kPower = 1.1, kPowerAtEdges = 1.5;
 /// samples, the usual number, on the scale of the rest of the noise, whose variance falls with another power. The two
 /// bundles are halves of one lattice, whose errors partly cancel in their sum. Hence the square of their difference is
 /// 4 (1 - 2^-power) times the variance of a bundle.
-const double kEdges = std::pow(64. / PathBundle::kMost, kPower - kPowerAtEdges) / (2 * (1 - std::exp2(-kPowerAtEdges)));
+const double kEdges = std::pow(64. / PathBundle::kSize, kPower - kPowerAtEdges) / (2 * (1 - std::exp2(-kPowerAtEdges)));
 
 using Color = std::array<double, 3>;
 
@@ -100,12 +100,12 @@ class Pilot {
   /// ones, so that the difference between two is noise. Without the filter: where pixels share samples, noise is that
   /// of the samples inside a pixel.
   void add_pixel(uint64_t index) {
-    constexpr uint32_t kAll = (1u << PathBundle::kMost) - 1;
+    constexpr uint32_t kAll = (1u << PathBundle::kSize) - 1;
     const PixelPosition pixel = sampling_.random_pixel(index);
     PathBundle& bundle = samples_.bundle();
     Color difference{};
     for (const uint64_t which : {0, 1}) {
-      samples_.make(pixel, (2 * index + which) * PathBundle::kMost, kAll, 0);
+      samples_.make(pixel, (2 * index + which) * PathBundle::kSize, kAll, 0);
       bundle.traced = 0;
       tracer_->trace(bundle);
       for (size_t i = 0; i < bundle.results.size(); ++i)

@@ -41,12 +41,12 @@ struct Path {
   /// Density of the last direction, 1/sr, for MIS with light sampling: the sum over the rays that the last vertex
   /// scattered; infinite if no light sample competes.
   float scatter_pdf;
-  float light_samples;  ///< number of light samples at the last vertex, for MIS
-  int scattered_rays;   ///< number of rays that the current vertex scatters
-  float share;          ///< factor on the radiance along the path: 1 / (number of rays scattered by its first vertex)
-  float power_factor;   ///< factor by which refraction alone has divided the throughput
-  int depth;            ///< scattering events so far
-  bool is_wide;         ///< one of them was not specular
+  float light_samples;   ///< number of light samples at the last vertex, for MIS
+  int scattered_rays;    ///< number of rays that the current vertex scatters
+  float split_weight;    ///< factor on the radiance along the path: 1 / (number of rays scattered by its first vertex)
+  float eta_scale;       ///< factor by which refraction alone has divided the throughput
+  int depth;             ///< scattering events so far
+  bool any_nonspecular;  ///< one of them was not specular
   LightSelector::LitPoint previous;  ///< the last vertex
   VertexKey key;                     ///< of the current vertex
 };

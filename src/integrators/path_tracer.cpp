@@ -31,7 +31,7 @@ class PathTracer final : public Tracer {
   PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings, Record record)
       : world_(world), selector_(selector), settings_(settings), record_(record) {}
 
-  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones, and so on.
+  /// Traces all paths with the first rays that their first vertices scatter, then with the second ones.
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
     record_.begin();
@@ -46,7 +46,7 @@ class PathTracer final : public Tracer {
   }
 
  private:
-  static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
+  static constexpr size_t kSize = PathBundle::kSize, kWidth = RayPacket::kWidth;
   static constexpr uint32_t kPacket = (1u << kWidth) - 1;  ///< lanes of one packet
 
   void trace_from_second_vertex(LaneSet alive) {
@@ -79,18 +79,17 @@ class PathTracer final : public Tracer {
       path.scatter_pdf = INFINITY;
       path.light_samples = 1;
       path.scattered_rays = 1;
-      path.share = 1;
-      path.power_factor = 1;
+      path.split_weight = 1;
+      path.eta_scale = 1;
       path.depth = 0;
-      path.is_wide = false;
+      path.any_nonspecular = false;
       path.previous = {path.ray.o, {0, 0, 1}};
       bundle_->results[i].reset();
     }
     return lanes;
   }
 
-  /// Index of the current vertices for random numbers. Those of a branch are above those of any path of the branch
-  /// before.
+  /// Index of the current vertices for random numbers. Each branch has a range of 2^21 indices.
   uint64_t vertex_index() const { return uint64_t(vertex_) + (uint64_t(branch_) << 21); }
   VertexKey current_key(size_t lane) const { return vertex_key(bundle_->keys[lane], vertex_index()); }
 
@@ -98,7 +97,7 @@ class PathTracer final : public Tracer {
   /// on which other samples are rendered.
   LaneSet intersect_camera_rays(const LaneSet& alive) {
     uint32_t hits = 0;
-    for (size_t first = 0; first < kMost; first += kWidth) {
+    for (size_t first = 0; first < kSize; first += kWidth) {
       if ((bundle_->wanted >> first & kPacket) == 0) continue;
       const RayPacket packet{&bundle_->rays[first], &bundle_->keys[first], bundle_->lanes >> first & kPacket};
       hits |= world_.intersect(packet, &points_[first]) << first;
@@ -128,7 +127,7 @@ class PathTracer final : public Tracer {
   /// a BSDF is added to `passing`.
   LaneSet evaluate_materials(const LaneSet& hits, LaneSet& passing) {
     LaneSet scattering;
-    for (const size_t i : hits) call_plugins_at(points_[i], [&] { evaluate_material(i, scattering, passing); });
+    for (const size_t i : hits) name_material_in_errors(points_[i], [&] { evaluate_material(i, scattering, passing); });
     return scattering;
   }
 
@@ -145,7 +144,7 @@ class PathTracer final : public Tracer {
     }
     if (path.depth == 0) set_first_hit(point, bundle_->results[lane].first);
     if (path.depth >= settings_.max_depth) return;
-    if (settings_.regularizes && path.is_wide) bsdf = bsdf->regularized(arena_);
+    if (settings_.regularizes && path.any_nonspecular) bsdf = bsdf->regularized(arena_);
     bsdfs_[lane].set(*bsdf, point.hit, -path.ray.d);
     path.scattered_rays = vertex_ == 0 ? first_scattered_rays(point, *bsdf) : 1;
     scattering.add(lane);
@@ -160,7 +159,7 @@ class PathTracer final : public Tracer {
 
   void add_radiance(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
     if (!radiance.is_physical() || !(weight >= 0)) return bundle_->results[lane].record_fault(light);
-    const SampledSpectrum added = paths_[lane].throughput * radiance * (weight * paths_[lane].share);
+    const SampledSpectrum added = paths_[lane].throughput * radiance * (weight * paths_[lane].split_weight);
     bundle_->results[lane].radiance += added;
     record_.add_radiance(lane, added);
   }
@@ -214,7 +213,7 @@ class PathTracer final : public Tracer {
     for (int which = 0; which < count; ++which) {
       if (vertex_ == 0) record_.select_light_sample(which, lanes);
       LaneSet lit, coherent;
-      for (const size_t i : lanes) call_plugins_at(points_[i], [&] { sample_light(i, which, lit, coherent); });
+      for (const size_t i : lanes) name_material_in_errors(points_[i], [&] { sample_light(i, which, lit, coherent); });
       count_rays(lit);
       const uint32_t occluded = occluded_packets(coherent) | occluded_rays(LaneSet(lit.bits() & ~coherent.bits()));
       for (const size_t i : LaneSet(lit.bits() & ~occluded))
@@ -235,7 +234,7 @@ class PathTracer final : public Tracer {
     const auto [light, probability] = *chosen;
     const auto sample = light->sample_compensated(point.hit.p, on_light, path.lambda);
     if (!sample || sample->radiance.is_black()) return;
-    if (!is_possible(*sample)) return bundle_->results[lane].record_fault(*light);
+    if (!is_valid_sample(*sample)) return bundle_->results[lane].record_fault(*light);
     float scatter_pdf = 0;
     const SampledSpectrum f_cos = bsdfs_[lane].f_cos(sample->wi, path.key.stream(Use::light_bsdf, which), scatter_pdf);
     if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY))
@@ -264,7 +263,7 @@ class PathTracer final : public Tracer {
   /// The same for coherent rays, in packets.
   uint32_t occluded_packets(const LaneSet& lit) const {
     uint32_t occluded = 0;
-    for (size_t first = 0; first < kMost; first += kWidth) {
+    for (size_t first = 0; first < kSize; first += kWidth) {
       const RayPacket packet{&shadow_rays_[first], &shadow_keys_[first], lit.bits() >> first & kPacket};
       if (packet.lanes != 0) occluded |= world_.occluded(packet) << first;
     }
@@ -300,7 +299,7 @@ class PathTracer final : public Tracer {
     draw(split, Number::lobe, numbers_);
     draw(split, Number::direction, pairs_);
     LaneSet alive = passing;
-    for (const size_t i : lanes) call_plugins_at(points_[i], [&] { sample_bsdf(i, alive); });
+    for (const size_t i : lanes) name_material_in_errors(points_[i], [&] { sample_bsdf(i, alive); });
     return alive;
   }
 
@@ -327,15 +326,15 @@ class PathTracer final : public Tracer {
     const Vec2 u = pairs_[size_t(which)][lane];
     LocalBsdf::Sample sample;
     if (!bsdfs_[lane].sample(uc, u, path.key.stream(Use::bsdf, which), sample)) return false;
-    if (!is_possible(sample)) {
+    if (!is_valid_sample(sample)) {
       bundle_->results[lane].record_fault(points_[lane]);
       return false;
     }
     path.throughput *= sample.weight;
-    path.share /= float(path.scattered_rays);
-    path.power_factor *= sample.power_factor;
+    path.split_weight /= float(path.scattered_rays);
+    path.eta_scale *= sample.eta_scale;
     path.lambda.retire_black_lanes(path.throughput);
-    path.is_wide = path.is_wide || !sample.is_specular;
+    path.any_nonspecular = path.any_nonspecular || !sample.is_specular;
     path.scatter_pdf =
         !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf * float(path.scattered_rays);
     set_ray(points_[lane].hit, sample.wi, path);
@@ -348,10 +347,10 @@ class PathTracer final : public Tracer {
   /// scattering: earlier, the few survivors add more noise in dark regions than the time saved is worth.
   bool survives(Path& path) const {
     if (path.throughput.is_black()) return false;
-    if (settings_.cut_off_attenuation) return attenuation(path) * path.power_factor >= settings_.cutoff;
+    if (settings_.cut_off_attenuation) return attenuation(path) * path.eta_scale >= settings_.cutoff;
     if (path.depth < kSafeScatterings - 1) return true;
     RandomStream random = path.key.stream(Use::roulette);
-    return survives_roulette(path.throughput.max() * path.power_factor, 1, random, path.throughput);
+    return survives_roulette(path.throughput.max() * path.eta_scale, 1, random, path.throughput);
   }
 
   /// The paper's luminance of the attenuation if the lanes are its three colours; else the mean.
@@ -376,19 +375,19 @@ class PathTracer final : public Tracer {
   PathBundle* bundle_ = nullptr;  ///< current bundle
   Arena arena_;
   int vertex_ = 0;  ///< index of the current vertices along their paths, surfaces without a BSDF included
-  int branch_ = 0;  ///< index of the rays, among those that each first vertex scatters, that are being traced
+  int branch_ = 0;  ///< which of the rays that each first vertex scatters is being traced: 0 or 1
   /// Paths whose first vertices scatter several rays, with one of the rays after the first.
   struct Branch {
     LaneSet alive;
-    std::array<Path, kMost> paths;
+    std::array<Path, kSize> paths;
   };
   std::array<Branch, kMostSplit - 1> branches_;
-  std::array<Path, kMost> paths_;
-  std::array<SurfacePoint, kMost> points_;
-  std::array<LocalBsdf, kMost> bsdfs_;
-  std::array<LightContribution, kMost> lights_;
-  std::array<Ray, kMost> shadow_rays_;
-  std::array<uint64_t, kMost> shadow_keys_{};
+  std::array<Path, kSize> paths_;
+  std::array<SurfacePoint, kSize> points_;
+  std::array<LocalBsdf, kSize> bsdfs_;
+  std::array<LightContribution, kSize> lights_;
+  std::array<Ray, kSize> shadow_rays_;
+  std::array<uint64_t, kSize> shadow_keys_{};
   SplitNumbers<float> numbers_;
   SplitNumbers<Vec2> pairs_;
 };

@@ -20,7 +20,7 @@ struct PathSettings {
   float cutoff;
   bool regularizes;
   bool hides_background;
-  /// The same as scattered_rays by SurfacePoint::material_id, for the materials before the vector's end.
+  /// scattered_rays by SurfacePoint::material_id; materials beyond the end have scattered_rays.
   std::vector<int> rays_by_material;
 };
 
@@ -30,8 +30,8 @@ class SplitRecord {
  public:
   struct Part {
     LaneSet paths;                                              ///< whose first vertex takes this sample
-    std::array<SampledSpectrum, PathBundle::kMost> radiance{};  ///< as it counts in the result
-    std::array<int, PathBundle::kMost> rays{};                  ///< number of rays, including those of later vertices
+    std::array<SampledSpectrum, PathBundle::kSize> radiance{};  ///< as it counts in the result
+    std::array<int, PathBundle::kSize> rays{};                  ///< number of rays, including those of later vertices
   };
   using Parts = std::array<Part, kMostSplit>;
   Parts lights, scattered;

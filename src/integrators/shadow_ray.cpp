@@ -25,7 +25,7 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
     if (is_hit) {
       arena.reset();
       const auto bsdf = [&] { return point.material->evaluate(point.hit, lambda_, arena); };
-      if (call_plugins_at(point, bsdf)) return false;
+      if (name_material_in_errors(point, bsdf)) return false;
     }
     // An unbounded medium attenuates distant lights over the diameter of the scene, as in pbrt-v4.
     const float distance = is_hit       ? length(point.hit.p - from)

@@ -57,7 +57,7 @@ inline constexpr int kMostSplit = 2;
 
 /// Numbers of one dimension, u[which][path]: of each of the samples that a path of a bundle takes at a vertex.
 template <class T>
-using SplitNumbers = std::array<std::array<T, PathBundle::kMost>, kMostSplit>;
+using SplitNumbers = std::array<std::array<T, PathBundle::kSize>, kMostSplit>;
 
 /// Paths of a bundle by the number of samples that they take at a vertex.
 class SplitLanes {
@@ -88,7 +88,7 @@ void draw_numbers(const PathBundle& bundle, uint64_t vertex, Number number, cons
   constexpr size_t kFew = 4;  // for more paths, the numbers of the whole bundle are as fast
   const uint32_t dimension = dimension_of(bundle, vertex, number);
   const PixelSamples& s = bundle.samples;
-  std::array<T, size_t(kMostSplit) * PathBundle::kMost> all;
+  std::array<T, size_t(kMostSplit) * PathBundle::kSize> all;
   for (uint32_t n = 1; n <= kMostSplit; ++n) {
     const LaneSet& paths = lanes.with_count(n);
     if (paths.empty()) continue;

@@ -47,7 +47,7 @@ class VolPathTracer final : public Tracer {
 
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
-    for (lane_ = 0; lane_ < PathBundle::kMost; ++lane_) {
+    for (lane_ = 0; lane_ < PathBundle::kSize; ++lane_) {
       if (!(bundle.wanted >> lane_ & 1)) continue;
       trace_path();
     }
@@ -74,7 +74,7 @@ class VolPathTracer final : public Tracer {
         if (!settings_.hides_background || depth_ > 0) add_environment();
         return;
       }
-      if (!call_plugins_at(point, [&] { return process_hit(point); })) return;
+      if (!name_material_in_errors(point, [&] { return process_hit(point); })) return;
     }
   }
 
@@ -210,13 +210,13 @@ class VolPathTracer final : public Tracer {
     LocalBsdf::Sample sample;
     if (!local.sample(draw<float>(Number::lobe), draw<Vec2>(Number::direction), key_.stream(Use::bsdf), sample))
       return false;
-    if (!is_possible(sample)) {
+    if (!is_valid_sample(sample)) {
       result().record_fault(point);
       return false;
     }
     path_.beta *= sample.weight;
     path_.r_l = path_.r_u * (1 / sample.pdf);
-    power_factor_ *= sample.power_factor;
+    power_factor_ *= sample.eta_scale;
     lambda_.retire_black_lanes(path_.beta);
     is_wide_ = is_wide_ || !sample.is_specular;
     is_specular_ = !settings_.sample_lights || sample.is_specular;
@@ -248,7 +248,7 @@ class VolPathTracer final : public Tracer {
     const auto [light, probability] = *chosen;
     const auto sample = light->sample_compensated(place.p, on_light, lambda_);
     if (!sample || sample->radiance.is_black()) return;
-    if (!is_possible(*sample)) return result().record_fault(*light);
+    if (!is_valid_sample(*sample)) return result().record_fault(*light);
     ShadowRay shadow(world_, lambda_, path_.hero, ray_.time, poll_);
     const Scattering scattering = scatter(*sample, shadow);
     if (scattering.value.is_black()) return;

@@ -87,9 +87,9 @@ std::vector<ViewDirection> views_of(const Arguments& args) {
 
 /// Returns an empty part, or the partial result of an earlier run. Throws InputError if that result is of another
 /// measurement.
-RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
+RenderPart first_part(const JobRun& run, const BrfMeter& meter, const ResumeFile* resume_file) {
   RenderPart fresh = meter.scene().empty_part();
-  const auto path = kept ? kept->found(run.args.flag("resume")) : std::nullopt;
+  const auto path = resume_file ? resume_file->found(run.args.flag("resume")) : std::nullopt;
   if (!path) return fresh;
   RenderPart part = read_part(*path);
   const std::string difference =
@@ -98,9 +98,9 @@ RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* 
   return part;
 }
 
-/// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
+/// Returns nullopt if the measurement was stopped. `resume_file` may be nullptr.
 std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, const BrfMeter& meter,
-                                      const KeptFile* kept) {
+                                      const ResumeFile* resume_file) {
   // A refinement starts with few samples and doubles them; each band needs at least one sample.
   constexpr uint64_t kFirst = 64;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
@@ -108,10 +108,10 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
   const auto paths = uint64_t(run.args.count("paths"));
   const RefineLimits limits{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
                             uint64_t{1} << 32, run.args.real("rms")};
-  RenderPart part = first_part(run, meter, kept);
+  RenderPart part = first_part(run, meter, resume_file);
   std::optional<Checkpointer> checkpointer;
-  if (kept) {
-    checkpointer.emplace(kept->checkpoint(), checkpoint_seconds(run.args), part, control.progress, run.log());
+  if (resume_file) {
+    checkpointer.emplace(resume_file->checkpoint(), checkpoint_seconds(run.args), part, control.progress, run.log());
     control.progress = &*checkpointer;
   }
   const auto write = [&checkpointer](const auto&) { checkpointer->write(); };
@@ -122,7 +122,7 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
         run.session().render(meter.scene(), {0, samples}, part, control);
       },
       [&] { return measurement.emplace(meter.read(part.film)).relative_error(); });
-  if (kept) kept->keep(end != RefineEnd::stopped, false, write);
+  if (resume_file) resume_file->keep(end != RefineEnd::stopped, false, write);
   if (end == RefineEnd::stopped) return {};
   if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
     fail(scene_file(run.args), "{}: the time limit ended before every direction was measured",
@@ -250,8 +250,8 @@ Result brf(const JobRun& run) {
                            .wavelengths = wavelengths_text(run.args),
                            .keeps_depth = run.args.given("integrator")};
   if (run.args.given("compare")) return run_comparison(run, request);
-  std::optional<KeptFile> kept;
-  if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
+  std::optional<ResumeFile> resume_file;
+  if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   Location where = scene_file(run.args);
   const auto load = [&] {
@@ -261,9 +261,9 @@ Result brf(const JobRun& run) {
   };
   const auto meter = within_time_limit(run, control, load, [&where] { return where; });
   run.context.log().check();
-  const auto measured = measure(run, control, *meter, kept ? &*kept : nullptr);
+  const auto measured = measure(run, control, *meter, resume_file ? &*resume_file : nullptr);
   if (!measured) {
-    if (kept) kept->report_stop();
+    if (resume_file) resume_file->report_stop();
     return {.stopped = true};
   }
   const BrfMeasurement& measurement = *measured;

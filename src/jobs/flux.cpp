@@ -63,14 +63,14 @@ constexpr JobParam kParams[] = {
 };
 
 /// Returns a callback that writes a checkpoint if the last one is older than the interval.
-std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& meter, const KeptFile& kept) {
+std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& meter, const ResumeFile& resume_file) {
   using Clock = std::chrono::steady_clock;
   const std::chrono::duration<double> interval(checkpoint_seconds(run.args));
-  return [&run, &meter, &kept, interval, last = Clock::now()]() mutable {
+  return [&run, &meter, &resume_file, interval, last = Clock::now()]() mutable {
     if (Clock::now() - last < interval) return;
     const UnstoppableScope whole;
     try {
-      meter.save(kept.checkpoint());
+      meter.save(resume_file.checkpoint());
     } catch (const InputError& error) {
       run.log().warn({}, fmt::format("no checkpoint was written; the measurement continues: {}", error.what()));
     }
@@ -96,9 +96,9 @@ double largest_relative_error(const JobRun& run, const FluxMeasurement& measurem
   return std::max(largest, errors.median / run.args.real("instance-error"));
 }
 
-/// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
+/// Returns nullopt if the measurement was stopped. `resume_file` may be nullptr.
 std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& control, FluxMeter& meter,
-                                       const std::optional<PhotonWeights>& photons, const KeptFile* kept) {
+                                       const std::optional<PhotonWeights>& photons, const ResumeFile* resume_file) {
   // A refinement starts with few paths and doubles them.
   constexpr uint64_t kFirst = 1 << 16;
   // As in the BRF, each band needs some paths for its standard error.
@@ -108,9 +108,9 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
   const RefineLimits limits{std::max(least, is_refined ? kFirst : uint64_t(run.args.count("paths"))), uint64_t{1} << 40,
                             is_refined ? 1.0 : 0.0};
   std::function<void()> checkpoint;
-  if (kept) {
-    if (const auto path = kept->found(run.args.flag("resume"))) meter.resume(*path);
-    checkpoint = checkpoint_writer(run, meter, *kept);
+  if (resume_file) {
+    if (const auto path = resume_file->found(run.args.flag("resume"))) meter.resume(*path);
+    checkpoint = checkpoint_writer(run, meter, *resume_file);
   }
   std::optional<FluxMeasurement> measurement;
   const RefineEnd end = refine(
@@ -123,7 +123,8 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
   if (end != RefineEnd::stopped && meter.paths() == 0)
     fail(scene_file(run.args), "{}: the time limit ended before any light path was traced",
          run.args.spelled("time-limit"));
-  if (kept) kept->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
+  if (resume_file)
+    resume_file->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
   if (end == RefineEnd::stopped) return {};
   return measurement ? std::move(measurement) : meter.read();
 }
@@ -278,8 +279,8 @@ void add_instances(const JobRun& run, const FluxMeasurement& measurement, const 
 
 /// The job: traces light paths until the requested number or error is reached, with checkpoints.
 Result flux(const JobRun& run) {
-  std::optional<KeptFile> kept;
-  if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
+  std::optional<ResumeFile> resume_file;
+  if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
   const SpectrumPtr irradiance = named_irradiance(run);
   const bool is_by_instance = run.args.text("by") == "instance";
   if (!is_by_instance) warn_if_nothing_is_kept(run);
@@ -310,9 +311,9 @@ Result flux(const JobRun& run) {
   const auto bands = meter.scene().wavelengths().bands();
   if (!photons) explain_no_photons(run, bands);
   run.context.log().check();
-  auto measured = measure(run, control, meter, photons, kept ? &*kept : nullptr);
+  auto measured = measure(run, control, meter, photons, resume_file ? &*resume_file : nullptr);
   if (!measured) {
-    if (kept) kept->report_stop();
+    if (resume_file) resume_file->report_stop();
     return {.stopped = true};
   }
   const FluxMeasurement& measurement = *measured;

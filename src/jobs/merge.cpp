@@ -41,7 +41,7 @@ void write_merged(const RenderPart& whole, const ImageOutput& output, const JobR
                    "pixels at the edges lack samples of neighbouring pixels within the filter's radius: other parts of "
                    "the image contain them");
   const auto& exposure = output.display().exposure;
-  report_exposure(run, exposure && exposure->is_auto, output.write(whole.film, finished_image(whole)), output.path());
+  report_exposure(run, exposure && exposure->is_auto, output.write(whole.film, finished_format(whole)), output.path());
 }
 
 /// The job: merges all parts in memory, then writes an image or a part.

@@ -7,9 +7,9 @@
 #include "image/image_file.h"
 #include "jobs/record/common_params.h"
 #include "jobs/support/display_params.h"
-#include "jobs/support/kept_file.h"
 #include "jobs/support/render_task.h"
 #include "jobs/support/render_views.h"
+#include "jobs/support/resume_file.h"
 #include "jobs/support/time_limit.h"
 #include "render/checkpoint.h"
 #include "render/film/adaptive.h"
@@ -139,16 +139,17 @@ class SceneRender {
       problems.check();
     }
     if (run_.args.flag("pilot")) return report_choice(result, json);
-    if (names_) kept_.emplace(*names_, run_.control.stop, run_.log());
+    if (names_) resume_file_.emplace(*names_, run_.control.stop, run_.log());
     RenderPart part = first_part();
     views_.begin(part.film, part.header.image, output_ ? output_->path() : run_.args.text("part"),
                  run_.context.log().target());
-    fill(part);
+    render_missing_samples(part);
     const UnstoppableScope whole;  // a stop that comes now does not end the writing
     result.stopped = run_.control.stop.stop_requested();
-    if (kept_)  // a complete image is written even if its checkpoint fails
-      kept_->keep(!result.stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
-    if (result.stopped && kept_) return kept_->report_stop();
+    if (resume_file_)  // a complete image is written even if its checkpoint fails
+      resume_file_->keep(!result.stopped, !output_,
+                         [&part](const auto& path) { write_part(path, part.header, part.film); });
+    if (result.stopped && resume_file_) return resume_file_->report_stop();
     if (result.stopped) return;
     finish(part, result);
     json.push_back(json_of(result));
@@ -211,7 +212,7 @@ class SceneRender {
   /// Returns an earlier run's partial result, or an empty part. Throws InputError if that result is of another render.
   RenderPart first_part() const {
     RenderPart fresh = task_.empty_part();
-    const auto path = kept_ ? kept_->found(run_.args.flag("resume")) : std::nullopt;
+    const auto path = resume_file_ ? resume_file_->found(run_.args.flag("resume")) : std::nullopt;
     if (!path) return fresh;
     RenderPart part = read_part(*path);
     check_same_render(fresh, part, *path);
@@ -233,11 +234,12 @@ class SceneRender {
   }
 
   /// Renders the samples that the part lacks.
-  void fill(RenderPart& part) {
+  void render_missing_samples(RenderPart& part) {
     RenderControl control = limit();
     std::optional<Checkpointer> checkpointer;
-    if (kept_) {
-      checkpointer.emplace(kept_->checkpoint(), checkpoint_seconds(run_.args), part, control.progress, run_.log());
+    if (resume_file_) {
+      checkpointer.emplace(resume_file_->checkpoint(), checkpoint_seconds(run_.args), part, control.progress,
+                           run_.log());
       control.progress = &*checkpointer;
     }
     statistics_ = task_.render(part, control, [&checkpointer](const auto& change, const PartHeader& header) {
@@ -275,7 +277,7 @@ class SceneRender {
                           100 * tail.share));
     if (output_) {
       const auto& exposure = output_->display().exposure;
-      const auto applied = output_->write(part.film, finished_image(part));
+      const auto applied = output_->write(part.film, finished_format(part));
       report_exposure(run_, exposure && exposure->is_auto, applied, output_->path());
     }
     views_.finish_display(output_ && output_->rounds_to_halves(part.film));
@@ -358,9 +360,9 @@ class SceneRender {
   RenderTask task_;
   RenderViews views_;
   std::optional<PlannedOutput> film_output_;
-  std::optional<ImageOutput> output_;     ///< empty if a part is written
-  std::optional<KeptFile::Names> names_;  ///< empty if no part is kept
-  std::optional<KeptFile> kept_;          ///< kept until all is written, because a signal may arrive before
+  std::optional<ImageOutput> output_;       ///< empty if a part is written
+  std::optional<ResumeFile::Names> names_;  ///< empty if no part is kept
+  std::optional<ResumeFile> resume_file_;   ///< kept until all is written, because a signal may arrive before
   double load_seconds_ = 0;
   RenderStatistics statistics_;
 };

@@ -163,8 +163,7 @@ class DiffuseAreaLight final : public AreaLight {
     const Vec3 wi = d / distance;
     const EmittingPoint at{on_light.p, on_light.ng, uv};
     const float density = pdf_along(at.ng, wi, distance);
-    // Not divided by the density, which `pdf` would have to reproduce: the weight corrects the sampling's
-    // non-uniformity.
+    // `pdf` assumes that points are uniform over the area; the weight corrects the radiance for the actual density.
     const SampledSpectrum emitted = radiance(at, -wi, lambda) * weight;
     if (!std::isfinite(density) || emitted.is_black()) return {};
     return LightSample{emitted, wi, distance, density};

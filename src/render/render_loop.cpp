@@ -53,7 +53,7 @@ constexpr std::chrono::milliseconds kGrace{500};
 /// State of one thread.
 class Worker {
  public:
-  Worker(const RenderJob& job, const Film& film)
+  Worker(const RenderInputs& job, const Film& film)
       : job_(job),
         wavelengths_(job.sampling.wavelengths),
         format_(film.format()),
@@ -148,12 +148,12 @@ class Worker {
     if (has_mattes) tile_.add_mattes(x, y, std::span(mattes_).subspan(begin, end - begin), kernel);
   }
 
-  static constexpr uint32_t kBundle = PathBundle::kMost;
+  static constexpr uint32_t kBundle = PathBundle::kSize;
   /// As in pbrt-v4. With one sample, the path's own, the noise of the albedo would be correlated with the noise of the
   /// colours, and a denoiser would take it for structure.
   static constexpr int kAlbedoSamples = 16;
 
-  const RenderJob& job_;
+  const RenderInputs& job_;
   const WavelengthStrategy& wavelengths_;
   const FilmFormat& format_;
   std::optional<SplatKernel> kernel_;  ///< set with splatting
@@ -169,7 +169,7 @@ class Worker {
 
 }  // namespace
 
-RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler) {
+RenderInputs job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler) {
   return {.world = scene,
           .integrator = integrator,
           .filter = scene.filter(),
@@ -177,11 +177,11 @@ RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler
           .leaf_flags = scene.leaf_flags()};
 }
 
-RenderJob job_of(const Scene& scene) { return job_of(scene, scene.integrator(), scene.sampler()); }
+RenderInputs job_of(const Scene& scene) { return job_of(scene, scene.integrator(), scene.sampler()); }
 
 WorkPlan plan_of(const Film& film, SampleRange samples) { return {film.sampled(), samples}; }
 
-RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
+RenderStatistics render(const RenderInputs& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control) {
   const RenderTimer timer;
   const StopScope stop(control.stop);
@@ -215,7 +215,7 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   return total;
 }
 
-int film_exponent(const RenderJob& job, double exposure) {
+int film_exponent(const RenderInputs& job, double exposure) {
   constexpr uint64_t kPaths = 256;
   const auto tracer = job.integrator.tracer(job.world);
   CameraSamples samples(job.sampling, nullptr);
@@ -223,7 +223,7 @@ int film_exponent(const RenderJob& job, double exposure) {
   std::vector<double> brightest;
   for (uint64_t i = 0; i < kPaths; ++i) {
     check_stop();
-    const size_t lane = i % PathBundle::kMost;
+    const size_t lane = i % PathBundle::kSize;
     samples.make(job.sampling.random_pixel(i), i - lane, 1u << lane);
     tracer->trace(bundle);
     const SensorResponse r = job.sampling.wavelengths.sensor(bundle.results[lane].radiance, bundle.lambda[lane]);

@@ -17,7 +17,7 @@ namespace frond {
 class Scene;
 
 /// Components of a render. The threads share them and do not modify them.
-struct RenderJob {
+struct RenderInputs {
   const World& world;
   const Integrator& integrator;
   const Filter& filter;
@@ -29,9 +29,9 @@ struct RenderJob {
 };
 
 /// Job of a scene with its own integrator and sampler. The scene must outlive the job.
-RenderJob job_of(const Scene& scene);
+RenderInputs job_of(const Scene& scene);
 /// The same with another integrator or sampler, which must outlive the job too.
-RenderJob job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler);
+RenderInputs job_of(const Scene& scene, const Integrator& integrator, const Sampler& sampler);
 
 /// Samples to render: a range of sample indices for a rectangle of pixels.
 struct WorkPlan {
@@ -69,12 +69,12 @@ class RenderTimer {
 
 /// Renders all samples of the plan that the film does not contain, and adds them to the film. The resulting film
 /// depends only on job and plan, not on the number of threads or on interruptions. Returns the statistics of this call.
-RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
+RenderStatistics render(const RenderInputs& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control = {});
 
 /// Value of FilmFormat::exponent for a job: the exponent of the median, over one path in each of 256 pixels, of the
 /// largest component of the sensor's response times `exposure`; 0 if all paths are black. It is the same on every
 /// machine.
-int film_exponent(const RenderJob& job, double exposure);
+int film_exponent(const RenderInputs& job, double exposure);
 
 }  // namespace frond

@@ -93,8 +93,8 @@ std::vector<std::string> material_names(const SceneSettings& description) {
   return names;
 }
 
-ImageFormat image_of(const SceneSettings& description, const ImageRequest& request, const Scene& scene,
-                     const FilmSettings& film, const ChannelList& channels) {
+ImageFormat image_format_of(const SceneSettings& description, const ImageRequest& request, const Scene& scene,
+                            const FilmSettings& film, const ChannelList& channels) {
   const auto bands = scene.wavelengths().bands();
   ImageFormat image{.space = space_of(description, request, scene.wavelengths().film_space()),
                     .bands = {bands.begin(), bands.end()},
@@ -174,7 +174,7 @@ void LoadedScene::check_samples(uint64_t samples) const {
          needed, kLanes, samples);
 }
 
-RenderJob LoadedScene::job() const { return job_of(*scene_); }
+RenderInputs LoadedScene::job() const { return job_of(*scene_); }
 
 RenderPart LoadedScene::empty_part() const {
   Film film(facts_.format, description_.film.where);
@@ -265,7 +265,7 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
     std::erase_if(channels, [](const std::string& name) { return !ChannelList({name}).color().empty(); });
   channels.insert(channels.end(), request.channels.begin(), request.channels.end());
   format.channels = ChannelList(channels);
-  loaded.image_format_ = image_of(description, request, *loaded.scene_, film, format.channels);
+  loaded.image_format_ = image_format_of(description, request, *loaded.scene_, film, format.channels);
   loaded.facts_.color_space = loaded.image_format_.space;
   if (format.splatting)
     loaded.image_format_.attributes["frond:correlated_pixels"] =

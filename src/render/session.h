@@ -20,8 +20,8 @@ namespace frond {
 struct ImageRequest {
   std::optional<Crop> pixels = {};  ///< pixels to render; in pixels of the film, which --quick halves
   /// True if other parts, to be merged with this one, contain the other pixels of the scene's crop. It matters with
-  /// splatting only: the part then takes no samples of those pixels, but of pixels around the scene's crop. If false,
-  /// the part takes samples of all pixels that reach `pixels`.
+  /// splatting only: true takes samples of `pixels` and of the margin around the scene's crop, false takes samples of
+  /// all pixels within the filter's reach of `pixels`.
   bool is_part = false;
   std::vector<std::string> channels = {};  ///< channels in addition to those of the scene's film (channels.h)
   std::string color_space = {};  ///< linear name, if the scene states none; empty: that of the wavelength strategy
@@ -42,7 +42,7 @@ class LoadedScene {
   /// Throws InputError if `samples` per pixel are too few to sample each spectral band at least once, or too many.
   void check_samples(uint64_t samples) const;
   /// Arguments for `render`; they refer to this object.
-  RenderJob job() const;
+  RenderInputs job() const;
   /// Identity of the image. Reads every file that the scene names; throws InputError.
   Identity identity() const { return identity_of(description_, facts_); }
   /// Part without samples. Throws InputError if the film needs more memory than the machine has.
@@ -52,7 +52,7 @@ class LoadedScene {
   friend class Session;
 
   SceneDescription description_;
-  ImageFacts facts_;
+  IdentityInputs facts_;
   std::unique_ptr<Scene> scene_;
   Crop scene_crop_{};
   ImageFormat image_format_;

@@ -23,8 +23,8 @@ PairedFilms::PairedFilms(const FilmSettings& film, int exponent, std::array<uint
   for (Film& half : films_) half = Film(format);
 }
 
-RenderJob PairedFilms::job(size_t half, const Scene& scene) const {
-  RenderJob job = job_of(scene, scene.integrator(), *samplers_[half]);
+RenderInputs PairedFilms::job(size_t half, const Scene& scene) const {
+  RenderInputs job = job_of(scene, scene.integrator(), *samplers_[half]);
   job.pixels = pixels_;
   return job;
 }

@@ -21,7 +21,7 @@ std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Re
 class PairedFilms {
  public:
   /// Uses the description's sampler. Films have the scene's wavelengths, without colour conversion, in units of
-  /// 2^exponent. `pixels`: as in a RenderJob.
+  /// 2^exponent. `pixels`: as in a RenderInputs.
   PairedFilms(const FilmSettings& film, int exponent, std::array<uint64_t, 2> seeds, const SceneSettings& description,
               const Registry& registry, const Scene& scene, std::vector<PixelPosition> pixels = {});
 
@@ -35,7 +35,7 @@ class PairedFilms {
   const Film& film(size_t half) const { return films_[half]; }
 
  private:
-  RenderJob job(size_t half, const Scene& scene) const;
+  RenderInputs job(size_t half, const Scene& scene) const;
 
   std::array<std::unique_ptr<Sampler>, 2> samplers_;
   std::vector<PixelPosition> pixels_;

@@ -29,7 +29,7 @@ static void check(const RenderPart& part) {
   fuzz::require(crop.width() > 0 && crop.height() > 0, "a film has pixels");
   sample_count(part.film), missing_samples_text(part), lacks_neighboring_samples(part.film);
   film_image(part.film, part.header.image);
-  finished_image(part);
+  finished_format(part);
 }
 
 FROND_FUZZ_TARGET(part, bytes) {

@@ -39,16 +39,16 @@ TEST(OnePathIntegrator, GetsEachSampleOfABundleThatIsWanted) {
   const EmptyWorld world;
   const Echo echo;
   const auto tracer = static_cast<const Integrator&>(echo).tracer(world);
-  PathBundle bundle{.sampler = *sampler, .dimension = 2, .samples = {7, 8, 32, PathBundle::kMost}};
+  PathBundle bundle{.sampler = *sampler, .dimension = 2, .samples = {7, 8, 32, PathBundle::kSize}};
   bundle.lanes = 0xffff, bundle.wanted = 0x8101;
-  for (size_t i = 0; i < PathBundle::kMost; ++i) {
+  for (size_t i = 0; i < PathBundle::kSize; ++i) {
     bundle.rays[i].o.x = float(i);
     bundle.keys[i] = 100 + i;
     bundle.results[i].scatterings = -1;
   }
   tracer->trace(bundle);
   EXPECT_EQ(bundle.traced, 9u);
-  for (size_t i = 0; i < PathBundle::kMost; ++i) {
+  for (size_t i = 0; i < PathBundle::kSize; ++i) {
     const PathResult& result = bundle.results[i];
     if (i != 0 && i != 8 && i != 15) {
       EXPECT_EQ(result.scatterings, -1);

@@ -30,7 +30,7 @@ TEST(CameraSamples, DoNotDependOnWhichSamplesAreWanted) {
   CameraSamples all(sampling, &scene->filter()), one(sampling, &scene->filter());
   all.make({3, 2}, 32, 0xffff);
   std::array<bool, 2> differs{};  // lens and time vary
-  for (size_t i = 0; i < PathBundle::kMost; ++i) {
+  for (size_t i = 0; i < PathBundle::kSize; ++i) {
     one.make({3, 2}, 32, 1u << i);
     const Ray &a = all.bundle().rays[i], &b = one.bundle().rays[i];
     EXPECT_EQ(a.o, b.o);
@@ -55,7 +55,7 @@ TEST(CameraSamples, WithoutJitterAreAtTheCentresOfPixelAndLens) {
   CameraSamples samples(sampling, &scene->filter());
   samples.make({3, 2}, 0, 0xffff);
   const Ray centre = scene->camera().ray({3.5f, 2.5f}, {0.5f, 0.5f});
-  for (size_t i = 0; i < PathBundle::kMost; ++i) {
+  for (size_t i = 0; i < PathBundle::kSize; ++i) {
     EXPECT_EQ(samples.bundle().rays[i].o, centre.o);
     EXPECT_EQ(samples.bundle().rays[i].d, centre.d);
     EXPECT_EQ(samples.bundle().lambda[i].nm, samples.bundle().lambda[0].nm);

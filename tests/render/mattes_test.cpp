@@ -83,7 +83,7 @@ TEST(Cryptomatte, HashIsThePublicOne) {
 TEST_F(Mattes, AlphaHasTheFilterOfTheColors) {
   for (const char* filter : {"gaussian", "gaussian,reconstruction=importance", "box", "triangle,xradius=1.3"}) {
     const RenderPart rendered = part({.wavelengths = "smpte", .filter = filter});
-    const Image image = film_image(rendered.film, finished_image(rendered));
+    const Image image = film_image(rendered.film, finished_format(rendered));
     const Image plain = [&] {
       const RenderPart other = SceneRender{.wavelengths = "smpte", .filter = filter}.part(scene_, {0, 9});
       return film_image(other.film, other.header.image);
@@ -113,7 +113,7 @@ TEST_F(Mattes, OfABandAreThoseOfColors) {
 
 TEST_F(Mattes, DecodeByName) {
   const RenderPart rendered = part();
-  const ImageFormat format = finished_image(rendered);
+  const ImageFormat format = finished_format(rendered);
   const Image image = film_image(rendered.film, format);
   EXPECT_EQ(coverage(image, 12, 13, "CryptoObject", "leaf.1"), 1);
   EXPECT_EQ(coverage(image, 19, 11, "CryptoObject", "leaf.2"), 1);
@@ -155,11 +155,11 @@ TEST_F(Mattes, OfPartsAndCropsAreThoseOfTheWhole) {
     const RenderPart merged = merge_parts(files),
                      crop = part({.pixels = Crop{9, 7, 22, 20}, .is_part = false, .filter = filter});
     EXPECT_EQ(merged.film, whole.film) << filter;
-    const Image all = film_image(whole.film, finished_image(whole)),
-                of_parts = film_image(merged.film, finished_image(merged)),
-                of_crop = film_image(crop.film, finished_image(crop));
+    const Image all = film_image(whole.film, finished_format(whole)),
+                of_parts = film_image(merged.film, finished_format(merged)),
+                of_crop = film_image(crop.film, finished_format(crop));
     EXPECT_EQ(of_parts.pixels, all.pixels) << filter;
-    EXPECT_EQ(finished_image(merged).attributes, finished_image(whole).attributes);
+    EXPECT_EQ(finished_format(merged).attributes, finished_format(whole).attributes);
     for (const char* name : {"A", "CryptoObject00.G", "CryptoMaterial00.R"})
       EXPECT_EQ(value(of_crop, 2, 3, name), value(all, 11, 10, name)) << filter << ' ' << name;
   }

@@ -48,7 +48,7 @@ class Parts : public ::testing::Test {
   RenderPart part(SampleRange samples, SceneRender how = {}) const { return how.part(scene_, samples); }
   /// The image's file.
   std::string image_of(const RenderPart& part) const {
-    ImageOutput(path("image.exr").string(), {}).write(part.film, finished_image(part));
+    ImageOutput(path("image.exr").string(), {}).write(part.film, finished_format(part));
     return bytes_of(path("image.exr"));
   }
   /// Error of merging two parts.

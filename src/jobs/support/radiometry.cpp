@@ -30,14 +30,14 @@ std::optional<std::array<double, 2>> period_of(const Arguments& args) {
 }
 
 /// The same file serves as checkpoint and as complete result, because the result proper is the CSV file.
-std::optional<KeptFile::Names> kept_names_of(const Arguments& args) {
+std::optional<ResumeFile::Names> kept_names_of(const Arguments& args) {
   if (!args.given("checkpoint") && !args.flag("resume")) return {};
   if (args.text("csv") == "-")
     fail({}, "{} and {} save a file beside the file of {}, which cannot be standard output", args.spelled("checkpoint"),
          args.spelled("resume"), args.spelled("csv"));
   const std::string part = args.text("csv") + ".part";
   check_replaceable(part);
-  return KeptFile::Names{part, part};
+  return ResumeFile::Names{part, part};
 }
 
 void warn_of_time_limit(const JobRun& run, uint64_t paths, double error) {

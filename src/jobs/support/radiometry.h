@@ -3,7 +3,7 @@
 #include <array>
 
 #include "jobs/record/common_params.h"
-#include "jobs/support/kept_file.h"
+#include "jobs/support/resume_file.h"
 #include "radiometry/brf.h"
 #include "report/table.h"
 
@@ -41,6 +41,6 @@ std::optional<std::array<double, 2>> period_of(const Arguments& args);
 /// Warns if the time limit ended a measurement before --paths, or before its standard error was as small as --rms.
 void warn_of_time_limit(const JobRun& run, uint64_t paths, double error);
 /// Returns the names of the partial result beside --csv; nullopt if neither --checkpoint nor --resume is given.
-std::optional<KeptFile::Names> kept_names_of(const Arguments& args);
+std::optional<ResumeFile::Names> kept_names_of(const Arguments& args);
 
 }  // namespace frond

@@ -67,7 +67,7 @@ class Exposure {
 
 /// Exact sums of the colours of a few samples of moderate brightness, in doubles: colours and their squares are rounded
 /// to multiples of a unit. It is faster than ExactSum.
-class ModestSums {
+class DoubleSums {
  public:
   /// Returns false, without a change, if the sample is too bright.
   bool add(const Double4& color) {
@@ -156,14 +156,14 @@ void FilmTile::clear(const Crop& pixels) {
   mean_sums_.assign(count * mean_count_, {});
   ids_.assign(count * id_count_, 0);
   reached_ = {};
-  if (shares_samples() && count > 0)
+  if (splats_samples() && count > 0)
     reached_ = intersection(widened(pixels, reach_x_, reach_y_), {0, 0, width_, height_});
   const size_t reached = size_t(reached_.width()) * size_t(reached_.height());
-  mattes_.assign((shares_samples() ? reached : count) * matte_count_, {});
+  mattes_.assign((splats_samples() ? reached : count) * matte_count_, {});
   splats_.assign(reached, {});
   band_splats_.assign(reached * band_count_, {});
   first_half_paths_ = 0;
-  first_half_.assign(has_halves_ ? (shares_samples() ? reached : count) : 0, {});
+  first_half_.assign(has_halves_ ? (splats_samples() ? reached : count) : 0, {});
   rays_ = 0;
   coverage_ = {};
 }
@@ -182,7 +182,7 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
   assert(at < pixels_.size());
   Pixel& pixel = pixels_[at];
   const Exposure exposure(format);
-  ModestSums modest;
+  DoubleSums modest;
   std::array<SplatSample, kAtOnce> splats;
   size_t splat_count = 0;
   for (const Sample& sample : samples) {
@@ -280,7 +280,7 @@ void FilmTile::add(int x, int y, const Features& f) {
 
 /// Samples with the same key are summed first: most bundles hit few surfaces.
 void FilmTile::add_mattes(int x, int y, std::span<const MatteSample> samples, const SplatKernel* kernel) {
-  assert(samples.size() <= kAtOnce && bool(kernel) == shares_samples());
+  assert(samples.size() <= kAtOnce && bool(kernel) == splats_samples());
   for (size_t list = 0; list < matte_count_; ++list) {
     std::array<bool, kAtOnce> is_done{};
     for (size_t i = 0; i < samples.size(); ++i) {
@@ -339,7 +339,7 @@ uint64_t FilmTile::paths() const {
 }
 
 FilmTile::WeightedSums FilmTile::sums(int x, int y) const {
-  return shares_samples() ? splat(x, y) : WeightedSums{pixel(x, y).sum, pixel(x, y).weight};
+  return splats_samples() ? splat(x, y) : WeightedSums{pixel(x, y).sum, pixel(x, y).weight};
 }
 
 void FilmTile::clear_first_half() {
@@ -350,7 +350,7 @@ void FilmTile::clear_first_half() {
 void FilmTile::begin_second_half() {
   assert(has_halves_);
   first_half_paths_ = paths();
-  const Crop& all = shares_samples() ? reached_ : crop_;
+  const Crop& all = splats_samples() ? reached_ : crop_;
   size_t at = 0;
   for (int y = all.y0; y < all.y1; ++y)
     for (int x = all.x0; x < all.x1; ++x) first_half_[at++] = sums(x, y);
@@ -380,11 +380,11 @@ bool FilmTile::merge(const FilmTile& other) {
     add_all(pixels_, to, other.pixels_, from, width);
     add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
     for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
-    if (!shares_samples())
+    if (!splats_samples())
       add_all(mattes_, to * matte_count_, other.mattes_, from * matte_count_, width * matte_count_);
-    if (other.first_half_paths_ > 0 && !shares_samples()) add_all(first_half_, to, other.first_half_, from, width);
+    if (other.first_half_paths_ > 0 && !splats_samples()) add_all(first_half_, to, other.first_half_, from, width);
   }
-  if (shares_samples()) merge_splats(other);
+  if (splats_samples()) merge_splats(other);
   first_half_paths_ += other.first_half_paths_;
   rays_ += other.rays_;
   return true;

@@ -137,7 +137,7 @@ class FilmTile {
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
   /// List `i` of mattes: over the samples that reach a pixel; without splatting, over the samples of the pixel.
   const MatteList& mattes(int x, int y, size_t i) const {
-    return mattes_[(shares_samples() ? reached_index(x, y) : index(x, y)) * matte_count_ + i];
+    return mattes_[(splats_samples() ? reached_index(x, y) : index(x, y)) * matte_count_ + i];
   }
   /// Pixels of the image that the tile's samples reach; empty without splatting.
   const Crop& reached() const { return reached_; }
@@ -149,7 +149,7 @@ class FilmTile {
   /// `halves`, the same over the first half of the samples.
   WeightedSums sums(int x, int y) const;
   const WeightedSums& first_half(int x, int y) const {
-    return first_half_[shares_samples() ? reached_index(x, y) : index(x, y)];
+    return first_half_[splats_samples() ? reached_index(x, y) : index(x, y)];
   }
   /// Number of samples of all pixels.
   uint64_t paths() const;
@@ -165,7 +165,7 @@ class FilmTile {
  private:
   friend class PartFile;  // reads and writes the arrays
 
-  bool shares_samples() const { return reach_x_ >= 0; }
+  bool splats_samples() const { return reach_x_ >= 0; }
   void add_features(size_t at, const FilmTile& other, size_t from);
   struct SplatSample;
   void add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples);

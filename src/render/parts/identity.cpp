@@ -59,7 +59,7 @@ std::string Identity::difference(const Identity& other, const std::string& here,
   return {};
 }
 
-Identity identity_of(const SceneDescription& description, const ImageFacts& facts) {
+Identity identity_of(const SceneDescription& description, const IdentityInputs& facts) {
   Identity id;
   const FilmSettings& film = facts.format.settings;
   id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));

@@ -34,7 +34,7 @@ class Identity {
 };
 
 /// Settings that decide an image's pixels in addition to the scene's description.
-struct ImageFacts {
+struct IdentityInputs {
   std::vector<std::filesystem::path> plugins;  ///< shared objects
   uint64_t seed;
   ParsedPlugin wavelengths;  ///< the wavelength strategy with its parameters
@@ -45,6 +45,6 @@ struct ImageFacts {
 
 /// Identity of an image of the scene. Reads every file that the description names, and frond's own program files.
 /// Throws InputError if a file cannot be read.
-Identity identity_of(const SceneDescription& description, const ImageFacts& facts);
+Identity identity_of(const SceneDescription& description, const IdentityInputs& facts);
 
 }  // namespace frond

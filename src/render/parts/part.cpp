@@ -127,7 +127,7 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
   return whole;
 }
 
-ImageFormat finished_image(const RenderPart& part) {
+ImageFormat finished_format(const RenderPart& part) {
   ImageFormat image = part.header.image;
   const SampleCount count = sample_count(part.film);
   const bool even = count.least == count.most;

@@ -47,6 +47,6 @@ bool lacks_neighboring_samples(const Film& film);
 RenderPart merge_parts(const std::vector<std::filesystem::path>& files);
 
 /// Image format of a part, with the attributes that follow from its film: command line, samples, noise.
-ImageFormat finished_image(const RenderPart& part);
+ImageFormat finished_format(const RenderPart& part);
 
 }  // namespace frond

@@ -54,7 +54,7 @@ class CutoffRenders {
   PathEnds measure_path_ends(double cutoff) const {
     const auto integrator = study_.integrator(*scene_, with_termination(integrator_, cutoff, PathEnds::kDepths - 1));
     Film film({.settings = study_.film(), .bands = scene_->wavelengths().bands().size()});
-    const RenderJob job = job_of(*scene_, *integrator, *sampler_);
+    const RenderInputs job = job_of(*scene_, *integrator, *sampler_);
     return render(job, plan_of(film, {0, samples_}), film, study_.session().pool()).ends;
   }
 

@@ -14,7 +14,7 @@ namespace frond {
 
 /// The file in which a job keeps its partial result, and from which it resumes. It is locked during the lifetime of
 /// this object.
-class KeptFile {
+class ResumeFile {
  public:
   struct Names {
     std::filesystem::path finished;    ///< path of a complete result
@@ -22,7 +22,7 @@ class KeptFile {
   };
 
   /// Throws Busy if another process holds the lock, InputError if the checkpoint is another file of the job.
-  KeptFile(Names names, std::stop_token stop, const Log& log);
+  ResumeFile(Names names, std::stop_token stop, const Log& log);
 
   /// Returns the path of an earlier run's result, or nullopt. Throws InputError if there is one and `resume` is false.
   std::optional<std::filesystem::path> found(bool resume) const;

@@ -1,4 +1,4 @@
-#include "jobs/support/kept_file.h"
+#include "jobs/support/resume_file.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 namespace frond {
 
-KeptFile::KeptFile(Names names, std::stop_token stop, const Log& log)
+ResumeFile::ResumeFile(Names names, std::stop_token stop, const Log& log)
     : names_(std::move(names)),
       stop_(std::move(stop)),
       log_(log),
@@ -16,7 +16,7 @@ KeptFile::KeptFile(Names names, std::stop_token stop, const Log& log)
       lock_(names_.finished) {}
 
 /// A complete result takes precedence over a checkpoint.
-std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
+std::optional<std::filesystem::path> ResumeFile::found(bool resume) const {
   std::error_code error;
   const auto& path = std::filesystem::exists(names_.finished, error) ? names_.finished : names_.checkpoint;
   if (!std::filesystem::exists(path, error)) return {};
@@ -26,8 +26,8 @@ std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
 }
 
 /// The checkpoint is removed only after the complete result has been written. A stop does not end the writing.
-void KeptFile::keep(bool is_complete, bool is_result,
-                    const std::function<void(const std::filesystem::path&)>& write) const try {
+void ResumeFile::keep(bool is_complete, bool is_result,
+                      const std::function<void(const std::filesystem::path&)>& write) const try {
   const UnstoppableScope whole;
   write(is_complete ? names_.finished : names_.checkpoint);
   std::error_code ignored;  // a name that is too long, for example: then there is no checkpoint
@@ -37,7 +37,7 @@ void KeptFile::keep(bool is_complete, bool is_result,
   log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
 }
 
-void KeptFile::report_stop() const {
+void ResumeFile::report_stop() const {
   log_.info(fmt::format("stopped; the partial result is in {}: the same command with --resume goes on from there",
                         names_.checkpoint.string()));
 }
