@@ -29,9 +29,9 @@ class BundleRender {
   }
 
   void add_bundle() {
-    const WorkPlan plan = plan_of(film_, {samples_, samples_ + PathBundle::kMost});
+    const WorkPlan plan = plan_of(film_, {samples_, samples_ + PathBundle::kSize});
     const RenderStatistics s = render(job_of(scene_), plan, film_, pool_);
-    samples_ += PathBundle::kMost;
+    samples_ += PathBundle::kSize;
     paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
   }
   double seconds_per_path() const { return cpu_seconds_ / paths_; }
