@@ -15,7 +15,7 @@ JOBS = _records.JOBS
 
 #: A valid value for each type of a text.
 TEXTS = {
-    "SCENE": "scene.pbrt", "FILE": "some.exr", "FOLDER": "folder", "CHART": "chart.svg", "WAVELENGTHS": [450, 550], "SWAP": {"*": "leaf_lambert"},
+    "SCENE": "scene.pbrt", "FILE": "some.exr", "FOLDER": "folder", "CHART": "chart.svg", "ANGLES": "ellipsoidal,mean=60", "WAVELENGTHS": [450, 550], "SWAP": {"*": "leaf_lambert"},
     "INTEGRATOR": "path,maxdepth=2", "FILTER": "box", "CHANNELS": ["normal", "depth"], "KINDS": True, "STOPS": 1, "KELVIN": 5500,
     "HOST:PORT": "127.0.0.1:9", "FIRST:END": (0, 2), "MATERIAL": "leaf_lambert", "MATERIAL|SCENE": "leaf_lambert", "FILE|FOLDER": "out.csv",
     "R,G,B": (0.01, 0.01, 0.02), "NAME": "leaf", "CSV": {"nm": [500, 510], "R": [0.1, 0.2]}, "LEAF": "a", "NAME=NUMBER": {"thickness": 1e-4},

@@ -409,7 +409,7 @@ TEST_F(Radiometry, AnExceptionDuringFluxNamesItsMaterial) {
   Session session(silent_log(), {2, {}, {}});
   session.add_material(kTorn);
   const std::string text = "WorldBegin\n" + kSun + "Material \"torn\" Shape \"disk\"\n";
-  FluxMeter meter(session, session.read_text(text, "test.pbrt"), {});
+  FluxMeter meter(session, session.read_text(text, "test.pbrt"), {.wavelengths = "bands,wavelengths=550"});
   EXPECT_THAT(error_of([&] { meter.trace(1024, session.pool()); }),
               AllOf(HasSubstr("test.pbrt:3"), HasSubstr("material \"torn\" has a defect: thrown by sample")));
 }
