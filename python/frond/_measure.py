@@ -80,8 +80,7 @@ brf, compare = _of_table("brf"), _of_table("compare")
 
 
 @_with_keywords_of("spectrophotometer")
-def spectrophotometer(material, wavelengths=None, angles=8, **options):
-    """Returns the table of measurements. With fluorescence=True it is the excitation-emission matrix, without wavelengths."""
+def spectrophotometer(material, wavelengths, angles=8, **options):
     return FUNCTIONS["spectrophotometer"](material_text(material), wavelengths, angles, **options).table
 
 

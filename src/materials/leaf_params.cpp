@@ -32,12 +32,6 @@ constexpr Param kOthers[] = {
      .list = true},
     {.name = "pigmentconcentrations", .kind = ParamKind::float_texture, .unit = leaf::kMassPerVolume, .range = {0, 100},
      .doc = "Concentrations of these pigments in the mesophyll, one for each file.", .list = true},
-    {.name = "fluorescingpigments", .kind = ParamKind::integer, .default_value = 0.0, .range = {0, 100},
-     .doc = "Number of these pigments, from the first on, whose absorption excites fluorescence, as that of chlorophyll "
-            "does."},
-    {.name = "emission", .kind = ParamKind::string,
-     .doc = "Spectrum file (.spd, .csv) of the fluorescence inside the tissue: wavelength in nm and density of photons, "
-            "of any unit; by default two Gaussians (docs/fluorescence.md)."},
     {.name = "sieve", .kind = ParamKind::boolean,
      .doc = "Absorption with the sieve and detour effects (Baranoski and Eng 2007); by default the specimen's, which "
             "is false for soybean and maize."},
@@ -60,12 +54,6 @@ Param param_of(const LeafNumber& n) {
 Incident incident_of(std::string_view word) {
   if (word == "reciprocal") return Incident::reciprocal;
   return word == "light" ? Incident::light : Incident::traced;
-}
-
-leaf::EmissionShape emission_of(const Params& p) {
-  if (!p.given("emission")) return {};
-  const std::filesystem::path file = p.file("emission");
-  return {spectrum_name(file), read_spd_points(file, p.where("emission")), p.where("emission")};
 }
 
 }  // namespace
@@ -114,8 +102,7 @@ LeafParams::LeafParams(const Params& p)
       pigments_where_(p.where("pigments")),
       tissue_(leaf::find_specimen(specimen_)->params),
       incident_(incident_of(p.string("incident"))),
-      depth_(read(p)),
-      emission_(emission_of(p)) {}
+      depth_(read(p)) {}
 
 leaf::DepthMap LeafParams::read(const Params& p) {
   Varying varying;
@@ -154,7 +141,6 @@ void LeafParams::read_pigments(const Params& p, Varying& varying) {
     pigment_data_.push_back({files[i].string(), spectrum->range_nm()});
     leaf::Pigment& pigment = tissue_.pigments.emplace_back();
     pigment.concentration = concentrations[i]->range().max;
-    pigment.fluoresces = static_cast<int>(i) < p.integer("fluorescingpigments");
     for (size_t k = 0; k < leaf::kAbsorptionGrid.size(); ++k)
       pigment.specific_absorption.push_back(double(spectrum->at(float(leaf::kAbsorptionGrid.nm(k)))));
     if (!concentrations[i]->is_constant())
@@ -173,11 +159,6 @@ void LeafParams::reject_wall_textures(const Params& p) const {
     if (number->is_structure())
       fail(p.where(number->name), "{} takes no texture for \"{}\": each texel would need its own table; abm takes one",
            p.plugin(), number->name);
-}
-
-void LeafParams::refuse_varying_fluorescence() const {
-  if (!is_constant())
-    fail(where_, "the fluorescence of a leaf with textures is not computed: give its parameters as numbers");
 }
 
 void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {
