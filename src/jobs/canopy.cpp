@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -86,6 +87,18 @@ std::optional<PlantRows> rows_of(const JobRun& run, double size) {
   return PlantRows{v[0], v[1]};
 }
 
+/// Warns if the crowns' centres extend over more than the plot, whose area is that of the leaf area index.
+void check_plot(const JobRun& run, const RandomCanopy& canopy) {
+  const auto [west, east] = std::ranges::minmax(canopy.crowns, {}, [](const Crown& c) { return c.centre.x; });
+  const auto [south, north] = std::ranges::minmax(canopy.crowns, {}, [](const Crown& c) { return c.centre.y; });
+  const double along_x = east.centre.x - west.centre.x, along_y = north.centre.y - south.centre.y;
+  if (along_x <= canopy.size[0] && along_y <= canopy.size[1]) return;
+  run.log().warn({}, fmt::format("{}: the crowns' centres extend over {:g} x {:g}, the plot ({}) is {:g} x {:g}: leaf "
+                                 "area index and period are those of the plot",
+                                 run.args.spelled("crowns"), along_x, along_y, run.args.spelled("size"), canopy.size[0],
+                                 canopy.size[1]));
+}
+
 /// Returns the canopy of the arguments, whose distribution is `angles`. Throws InputError if --heights is reversed.
 RandomCanopy canopy_of(const JobRun& run, const LeafAngles& angles) {
   const Arguments& args = run.args;
@@ -107,7 +120,10 @@ RandomCanopy canopy_of(const JobRun& run, const LeafAngles& angles) {
     canopy.profile = read_profile(args.text("profile"));
     if (!args.given("lai")) canopy.leaf_area_index = canopy.profile->integral();
   }
-  if (args.given("crowns")) canopy.crowns = read_crowns(args.text("crowns"));
+  if (args.given("crowns")) {
+    canopy.crowns = read_crowns(args.text("crowns"));
+    check_plot(run, canopy);
+  }
   for (const std::string& text : args.texts("column")) canopy.columns.push_back(column_of(text, args));
   return canopy;
 }
@@ -134,7 +150,8 @@ Result canopy(const JobRun& run) {
   std::vector<std::string> names;
   for (const RandomCanopy::Column& column : canopy.columns) names.push_back(column.name);
   const std::string output = binary_file_of(run.args, "output");
-  InstanceWriter writer(output, leaves, names);
+  const MapType type = map_type(canopy.largest_position());
+  InstanceWriter writer(output, leaves, names, type);
   LeafPlacer placer(canopy);
   std::vector<float> values(names.size());
   for (uint64_t leaf = 0; leaf < leaves; ++leaf) {
@@ -151,6 +168,7 @@ Result canopy(const JobRun& run) {
     message += fmt::format(", leaf area index {:.5g}", index);
   }
   message += fmt::format("; leaf angles {}", text_of(angles));
+  if (type == MapType::precise) message += "; 64-bit floats for positions far from the origin";
   result.facts.push_back({"mean_leaf_angle_deg", angles.mean() * 180 / std::numbers::pi});
   if (angles.chi) result.facts.push_back({"chi", *angles.chi});
   run.log().info(message);

@@ -164,8 +164,7 @@ Result structure(const JobRun& run) {
   run.log().info(fmt::format(
       "{} rays for each direction and points of leaves; RMS standard error {:.2g}{}", m.rays, m.error(),
       m.sun_deg ? fmt::format("; sun at zenith angle {:.4g}, azimuth {:.4g} degrees", (*m.sun_deg)[0], (*m.sun_deg)[1])
-                : "; no sunlit fraction: the scene has not exactly one sun, and " + run.args.spelled("sun") +
-                      " is not given"));
+                : "; no sunlit fraction: the scene has no sun, or several; " + run.args.spelled("sun") + " gives one"));
   if (const double rms = run.args.real("rms"); rms > 0 && m.error() > rms)
     run.log().warn({}, fmt::format("{} {:g} was not reached", run.args.spelled("rms"), rms));
   else if (rms == 0 && m.rays < uint64_t(run.args.count("rays")))

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -11,16 +10,15 @@
 #include "core/stop.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
+#include "radiometry/ratio_sums.h"
 #include "scene/geometry/surface_points.h"
 #include "scene/leaf_models.h"
 #include "scene/scene_options.h"
-#include "system/machine.h"
 
 namespace frond {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr MeanError kUnknown{NAN, NAN};
 
 Vec3d direction_of(double zenith_deg, double azimuth_deg) {
   const double theta = zenith_deg * kDegree, phi = azimuth_deg * kDegree;
@@ -35,31 +33,6 @@ double mean_projection(double theta, double alpha) {
   const double psi = std::acos(std::clamp(1 / (std::tan(theta) * std::tan(alpha)), -1.0, 1.0));
   return straight * (1 + 2 / std::numbers::pi * (std::tan(psi) - psi));
 }
-
-/// Sums of weights, and of a quantity times its weight, whose ratio is the quantity's mean.
-struct RatioSums {
-  double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  void add(double value, double weight) {
-    const double v = value * weight;
-    x += v, y += weight, xx += v * v, xy += v * weight, yy += weight * weight;
-  }
-  RatioSums& operator+=(const RatioSums& o) {
-    x += o.x, y += o.y, xx += o.xx, xy += o.xy, yy += o.yy;
-    return *this;
-  }
-  /// Returns the ratio, with the error of its linearization.
-  MeanError ratio() const {
-    if (!(y > 0)) return kUnknown;
-    const double mean = x / y, squares = std::max(0.0, xx - 2 * mean * xy + mean * mean * yy);
-    return {mean, std::sqrt(squares) / y};
-  }
-  /// Returns the mean of the weights over n samples.
-  MeanError mean_weight(double n) const {
-    const double mean = y / n, variance = std::max(0.0, yy / n - mean * mean);
-    constexpr double kRounding = 1e-12;  // equal weights have no error
-    return {mean, variance > kRounding * mean * mean && n > 1 ? std::sqrt(variance / (n - 1)) : 0};
-  }
-};
 
 /// Returns how many repetitions of a position, by a period, lie in [low, high).
 double repetitions(double at, double low, double high, const std::optional<double>& period) {
@@ -253,6 +226,9 @@ class StructureMeter::Sums {
 };
 
 StructureMeter::StructureMeter(Session& session, SceneDescription description, const StructureRequest& request) {
+  if (description.has_media())
+    fail(description.media.front().plugin.where,
+         "structure measures surfaces only, no participating media, not even medium \"turbid\": remove the media");
   std::vector<uint8_t> is_counted = counted_materials(description, request.materials, session.registry());
   simplify(session.registry(), request, description);
   LoadedScene loaded = session.load(std::move(description));
@@ -282,15 +258,15 @@ void StructureMeter::trace(uint64_t rays, ThreadPool& pool, const RenderControl&
   constexpr uint64_t kBlocks = 64;
   State& s = *state_;
   RenderStatistics statistics;
-  const double cpu = cpu_seconds();
-  const auto start = std::chrono::steady_clock::now();
+  const RenderTimer timer;
   const StopScope stop(control.stop);
   const DeadlineScope deadline(control.deadline);
   for (uint64_t done = 0; done < rays && !control.is_over();) {
     const uint64_t round = std::min(rays - done, kBlocks * Sums::kBlock);
-    const auto points = s.points.draw(hash_key(s.scene().seed(), uint64_t{Sums::kPoints}), s.rays, size_t(round));
-    std::vector<Sums> sums((points.size() + Sums::kBlock - 1) / Sums::kBlock, Sums(s));
+    std::vector<RandomSurfacePoint> points;
+    std::vector<Sums> sums((round + Sums::kBlock - 1) / Sums::kBlock, Sums(s));
     try {
+      points = s.points.draw(hash_key(s.scene().seed(), uint64_t{Sums::kPoints}), s.rays, size_t(round));
       pool.for_each(int64_t(sums.size()), [&](int64_t block, int) {
         const uint64_t begin = uint64_t(block) * Sums::kBlock;
         sums[size_t(block)].trace(s.rays + begin, std::span(points).subspan(begin).first(
@@ -310,8 +286,7 @@ void StructureMeter::trace(uint64_t rays, ThreadPool& pool, const RenderControl&
     }
     s.rays += points.size(), done += points.size();
     statistics.paths = done;
-    statistics.cpu_seconds = cpu_seconds() - cpu;
-    statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    timer.read(statistics);
     if (control.progress) control.progress->update(double(done) / double(rays), statistics);
   }
   if (control.progress) control.progress->finish();

@@ -130,5 +130,22 @@ TEST_F(CanopyJobs, TheStructureStopsAtAnError) {
   EXPECT_THAT(structure({"--csv", folder_.name_of("scene.pbrt")}).err, HasSubstr("would replace the input"));
 }
 
+TEST_F(CanopyJobs, CrownsInMapCoordinatesKeepTheirPositions) {
+  const auto crowns = folder_.write("crowns.csv", "x,y,z,radius\n500000,4649776,5,2\n500300,4649776,5,2\n");
+  const Outcome o = canopy({"--crowns", crowns.string(), "--count", "10"});
+  EXPECT_THAT(o.err, HasSubstr("64-bit floats for positions far from the origin"));
+  EXPECT_THAT(o.err, HasSubstr("--crowns: the crowns' centres extend over 300 x 0, the plot (--size) is 10 x 10"));
+  EXPECT_THAT(canopy({"--crowns", crowns.string(), "--count", "10", "--size", "400,20"}).err,
+              ::testing::Not(HasSubstr("the crowns' centres")));
+}
+
+TEST_F(CanopyJobs, TheStructureOfAMediumIsAnError) {
+  const auto scene = folder_.write("medium.pbrt",
+                                   "WorldBegin\nMakeNamedMedium \"leaves\" \"string type\" \"turbid\"\n"
+                                   "MediumInterface \"leaves\" \"\" Material \"interface\" Shape \"sphere\"\n");
+  EXPECT_THAT(frond_command({"structure", scene.string()}).err,
+              HasSubstr("medium.pbrt:2:40: structure measures surfaces only, no participating media"));
+}
+
 }  // namespace
 }  // namespace frond

@@ -26,7 +26,7 @@ TEST(RandomCanopy, LeavesHaveTheAnglesOfTheDistribution) {
     constexpr int kLeaves = 20000;
     double sum = 0, squares = 0;
     for (int i = 0; i < kLeaves; ++i) {
-      const AffineMap map = placer.place({});
+      const AffineMap map = rounded_map(placer.place({}));
       const Vec3 normal = normalize(map.vector({0, 0, 1}));
       EXPECT_NEAR(length(map.vector({1, 0, 0})), 0.05f, 1e-6f);
       const double c = std::abs(double(normal.z));
@@ -49,7 +49,7 @@ TEST(RandomCanopy, LeavesKeepTheMinimumDistance) {
   canopy.count = 2000, canopy.ball = 1, canopy.apart = 0.1;
   LeafPlacer placer(canopy);
   std::vector<Vec3> middles;
-  for (uint64_t i = 0; i < canopy.leaves(); ++i) middles.push_back(placer.place({}).translation());
+  for (uint64_t i = 0; i < canopy.leaves(); ++i) middles.push_back(rounded_map(placer.place({})).translation());
   for (size_t i = 0; i < middles.size(); ++i) {
     EXPECT_LE(length(middles[i]), 1.00001f);
     for (size_t j = 0; j < i; ++j) ASSERT_GT(length(middles[i] - middles[j]), 0.09999f);
@@ -114,7 +114,7 @@ double p_of_shares(const RandomCanopy& canopy, const std::function<double(const 
   LeafPlacer placer(canopy);
   std::vector<double> observed(10), expected(10, double(canopy.leaves()) / 10);
   for (uint64_t i = 0; i < canopy.leaves(); ++i) {
-    const double share = share_below(placer.place({}).translation());
+    const double share = share_below(rounded_map(placer.place({})).translation());
     EXPECT_GE(share, -1e-6);
     EXPECT_LE(share, 1 + 1e-6);
     ++observed[std::min(size_t(std::max(0.0, share) * 10), size_t{9})];
@@ -169,8 +169,24 @@ TEST(RandomCanopy, CrownsHaveLeavesByVolumeAndDensity) {
                    {{20, 0, 0}, {1, 1, 1}, Crown::Shape::cylinder, 1}};
   LeafPlacer placer(canopy);
   std::array<int, 3> found{};
-  for (int i = 0; i < 1000; ++i) ++found[size_t(std::lround(double(placer.place({}).translation().x) / 10))];
+  for (int i = 0; i < 1000; ++i)
+    ++found[size_t(std::lround(double(rounded_map(placer.place({})).translation().x) / 10))];
   EXPECT_EQ(found, (std::array{400, 400, 200}));
+}
+
+// 32-bit floats of coordinates of 4e6 are multiples of 0.5.
+TEST(RandomCanopy, PositionsInMapCoordinatesAreExact) {
+  RandomCanopy near{.count = 100, .angles = &leaf_angle_distributions()[0], .crowns = {{{0, 0, 0}, {1, 1, 1}}}};
+  RandomCanopy far = near;
+  far.crowns[0].centre = {500000, 4649776, 0};
+  EXPECT_EQ(near.largest_position(), 1);
+  EXPECT_EQ(far.largest_position(), 4649777);
+  LeafPlacer near_placer(near), far_placer(far);
+  for (int i = 0; i < 100; ++i) {
+    const auto a = near_placer.place({}), b = far_placer.place({});
+    EXPECT_NEAR(b[0][3] - 500000, a[0][3], 1e-9);
+    EXPECT_NEAR(b[1][3] - 4649776, a[1][3], 1e-8);
+  }
 }
 
 }  // namespace

@@ -77,8 +77,4 @@ PreciseTransform::Rows oriented_rows(const Vec3d& position, const Vec3d& normal,
   return rows;
 }
 
-AffineMap oriented_map(const Vec3d& position, const Vec3d& normal, double spin, double scale) {
-  return rounded_map(oriented_rows(position, normal, spin, scale));
-}
-
 }  // namespace frond

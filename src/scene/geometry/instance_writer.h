@@ -41,7 +41,5 @@ class InstanceWriter {
 /// Returns a map from the direction of its z axis, a rotation about it (radians), and a scale. The front of a leaf
 /// faces +z.
 PreciseTransform::Rows oriented_rows(const Vec3d& position, const Vec3d& normal, double spin, double scale);
-/// The same in single precision.
-AffineMap oriented_map(const Vec3d& position, const Vec3d& normal, double spin, double scale);
 
 }  // namespace frond

@@ -26,6 +26,22 @@ uint64_t RandomCanopy::leaves() const {
   return uint64_t(std::llround(leaf_area_index * size[0] * size[1] / (leaf_area * scale * scale)));
 }
 
+double RandomCanopy::largest_position() const {
+  if (ball > 0) return ball;
+  double largest = 0;
+  const auto add = [&largest](double x) { largest = std::max(largest, std::abs(x)); };
+  for (const Crown& crown : crowns) {
+    const Vec3d &c = crown.centre, &r = crown.radii;
+    for (const auto& [middle, radius] : {std::pair{c.x, r.x}, {c.y, r.y}, {c.z, r.z}})
+      add(middle - radius), add(middle + radius);
+  }
+  if (!crowns.empty()) return largest;
+  for (const double x : size) add(x);
+  for (const double z : heights) add(profile ? 0 : z);
+  if (profile) add(profile->points().front().at), add(profile->points().back().at);
+  return largest;
+}
+
 /// A distribution without density is horizontal: all angles are 0.
 LeafPlacer::LeafPlacer(const RandomCanopy& canopy) : canopy_(canopy), leaves_(canopy.leaves()) {
   constexpr int kSteps = LeafAngles::kSteps;
@@ -111,7 +127,7 @@ bool LeafPlacer::try_to_place(const Vec3d& p) {
 }
 
 /// Each leaf has its own random stream. Positions too close to others are rejected and redrawn.
-AffineMap LeafPlacer::place(std::span<float> values) {
+PreciseTransform::Rows LeafPlacer::place(std::span<float> values) {
   constexpr int kMostTries = 100000;
   RandomStream random(hash_key(canopy_.seed, next_++));
   const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
@@ -127,7 +143,7 @@ AffineMap LeafPlacer::place(std::span<float> values) {
   const double spin = between(0, 2 * kPiD);
   for (size_t c = 0; c < canopy_.columns.size(); ++c)
     values[c] = float(between(canopy_.columns[c].range.min, canopy_.columns[c].range.max));
-  return oriented_map(at_position, normal, spin, canopy_.scale);
+  return oriented_rows(at_position, normal, spin, canopy_.scale);
 }
 
 }  // namespace frond

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/math/affine_map.h"
+#include "core/math/precise_transform.h"
 #include "core/math/random.h"
 #include "core/spectrum.h"
 #include "scene/geometry/leaf_angles.h"
@@ -55,6 +55,8 @@ struct RandomCanopy {
 
   /// Returns the number of leaves, rounded to the nearest integer.
   uint64_t leaves() const;
+  /// Returns the largest absolute value of the coordinates of leaves.
+  double largest_position() const;
 };
 
 /// Generates leaves one by one. Equal seeds give equal leaves.
@@ -63,7 +65,7 @@ class LeafPlacer {
   explicit LeafPlacer(const RandomCanopy& canopy);
   /// Returns the next of the canopy's leaves and sets its columns' values. Throws InputError if there is no free
   /// position for it.
-  AffineMap place(std::span<float> values);
+  PreciseTransform::Rows place(std::span<float> values);
 
  private:
   using Cell = std::array<int64_t, 3>;

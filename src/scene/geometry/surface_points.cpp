@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/math/random.h"
+#include "core/stop.h"
 
 namespace frond {
 namespace {
@@ -18,7 +19,9 @@ double area_factor(const AffineMap& map) {
 }  // namespace
 
 SurfacePoints::SurfacePoints(const Geometry& geometry, std::span<const uint8_t> is_counted) : geometry_(geometry) {
+  StopPoll poll;
   geometry.visit_surfaces([&](const Surface& surface, const AffineMap&, uint64_t) {
+    poll();
     if (is_counted[surface.material]) emitters_.try_emplace(&surface, surface);
   });
   visit([this](const ShapeEmitter& emitter, const AffineMap&, double factor) { total_ += factor * emitter.area(); });
@@ -26,7 +29,9 @@ SurfacePoints::SurfacePoints(const Geometry& geometry, std::span<const uint8_t> 
 
 template <class Visit>
 void SurfacePoints::visit(const Visit& visit) const {
+  StopPoll poll;
   geometry_.visit_surfaces([&](const Surface& surface, const AffineMap& map, uint64_t) {
+    poll();
     const auto emitter = emitters_.find(&surface);
     if (emitter != emitters_.end()) visit(emitter->second, map, area_factor(map));
   });

@@ -24,7 +24,8 @@ class SurfacePoints {
 
   /// The area to which weights are relative: that of the surfaces if no map stretches them and no alpha cuts them.
   double total() const { return total_; }
-  /// Returns the points with indices from `first`. Each depends on `key` and its index only.
+  /// Returns the points with indices from `first`. Each depends on `key` and its index only. Throws Stopped, as the
+  /// constructor does.
   std::vector<RandomSurfacePoint> draw(uint64_t key, uint64_t first, size_t count) const;
 
  private:
