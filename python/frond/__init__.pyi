@@ -217,13 +217,16 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.Path
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or a spectrum file. By default that of equal energy. Default: stdillum-E.
-    rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9.
+    rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9; with fluorescence for each pair of wavelengths, by default 1e4.
     se: Stop when the standard errors of R, T and A are at most this. Range: above 0.
     rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
+    fluorescence: Measure the excitation-emission matrices of both sides: photons per nm of emission per incident photon. Excludes wavelengths, se, rendered, illuminant.
+    excitation: Wavelengths of excitation. Unit: nm. Range: from 400 to 750. Default: 400:750:10. Needs fluorescence.
+    emission: Wavelengths of emission. Unit: nm. Range: from 640 to 850. Default: 640:850:10. Needs fluorescence.
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
-    plot: Chart of R and T against wavelength or angle: .svg or .png."""
+    plot: Chart of R and T against wavelength or angle, or maps of fluorescence over excitation and emission: .svg or .png."""
 
 def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
     """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr

@@ -80,7 +80,8 @@ brf, compare = _of_table("brf"), _of_table("compare")
 
 
 @_with_keywords_of("spectrophotometer")
-def spectrophotometer(material, wavelengths, angles=8, **options):
+def spectrophotometer(material, wavelengths=None, angles=8, **options):
+    """Returns the table of measurements. With fluorescence=True it is the excitation-emission matrix, without wavelengths."""
     return FUNCTIONS["spectrophotometer"](material_text(material), wavelengths, angles, **options).table
 
 

@@ -98,7 +98,7 @@ void bind_leaf(nb::module_& m) {
       "path"_a, "bytes"_a);
   // Names of a leaf's numbers, and how they act (leaf/tissue/leaf_numbers.h).
   m.def("leaf_numbers", [] {
-    constexpr const char* kActions[] = {"length", "absorption", "structure", "surface"};
+    constexpr const char* kActions[] = {"length", "absorption", "structure", "surface", "emission"};
     std::vector<std::pair<const char*, const char*>> numbers;
     for (const leaf::LeafNumber& n : leaf::leaf_parameters())
       numbers.emplace_back(n.name.data(), kActions[static_cast<size_t>(n.action)]);

@@ -24,7 +24,7 @@ TEXTS = {
 #: Values for parameters that have no type, or whose type is not enough.
 OWN = {"display": "sRGB", "view": "Raw", "color-space": "linear sRGB", "scale": 0.5, "max-rms": "2%", "images": ["a.exr", "b.exr", "c.exr", "d.exr"],
        "parts": ["a.part", "b.part"], "crop": (0, 0.5, 0, 1), "lanes": [1, 2], "heights": (0, 1), "depths": (1, 2), "model": "plant.obj",
-       "min-time": 0.01}
+       "min-time": 0.01, "emission": [690, 740]}
 NUMBERS = {1: [30], 2: (1, 2), 3: (650, 550, 450), 4: (0, 2, 0, 2), 5: (0, 1, 0, 1, 0)}
 
 

@@ -88,9 +88,9 @@ constexpr leaf::AreaUnit kAreaUnits[] = {leaf::kMicrogramsPerCm2,
 
 /// Returns the parameter of this name that a fit may keep; nullptr if there is none.
 const leaf::LeafNumber* find_fixable_number(std::string_view name) {
-  // R and T do not depend on the shape of the surface, and a fit does not change it.
+  // R and T do not depend on the shape of the surface and on the fluorescence, and a fit leaves these as they are.
   const leaf::LeafNumber* n = leaf::find_leaf_number(name);
-  return n && n->is_parameter() && n->action != leaf::LeafAction::surface ? n : nullptr;
+  return n && n->is_parameter() && n->changes_shares() ? n : nullptr;
 }
 
 /// Parses NAME=NUMBER for a parameter or a content per leaf area. Throws InputError.

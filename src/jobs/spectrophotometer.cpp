@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/fluorescence.h"
+#include "jobs/support/fluorescence_tables.h"
 #include "jobs/support/instrument.h"
 #include "report/chart.h"
 #include "report/share_tables.h"
@@ -14,22 +16,44 @@ namespace {
 
 using enum ArgumentKind;
 
+/// As for all instruments, but not needed with --fluorescence, which has wavelengths of excitation and emission.
+constexpr JobParam kWavelengthsParam = [] {
+  JobParam param = kInstrumentWavelengthsParam;
+  param.required = false;
+  return param;
+}();
+
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    kInstrumentWavelengthsParam,
+    kWavelengthsParam,
     kAnglesParam,
     kWithParam,
     kIlluminantParam,
     JobParam("rays", count,
-             "Number of rays for each measurement, by default 1e6; with --se the maximum, by default 1e9.",
+             "Number of rays for each measurement, by default 1e6; with --se the maximum, by default 1e9; with "
+             "--fluorescence for each pair of wavelengths, by default 1e4.",
              {.range = kRayCounts, .decides = true}),
     JobParam("se", real, "Stop when the standard errors of R, T and A are at most this.",
              {.range = kAboveZero, .aliases = "standard-error", .decides = true}),
     kRenderedParam,
+    JobParam("fluorescence", flag,
+             "Measure the excitation-emission matrices of both sides: photons per nm of emission per incident photon.",
+             {.decides = true, .excludes = "wavelengths,se,rendered,illuminant"}),
+    JobParam("excitation", numbers, "Wavelengths of excitation.",
+             {.default_value = "400:750:10",
+              .unit = "nm",
+              .range = kExcitation_nm,
+              .decides = true,
+              .needs = "fluorescence"}),
+    JobParam(
+        "emission", numbers, "Wavelengths of emission.",
+        {.default_value = "640:850:10", .unit = "nm", .range = kEmission_nm, .decides = true, .needs = "fluorescence"}),
     kSeedParam,
     kCsvParam,
     kJsonParam,
-    chart_param("plot", "Chart of R and T against wavelength or angle: .svg or .png."),
+    chart_param("plot",
+                "Chart of R and T against wavelength or angle, or maps of fluorescence over excitation and "
+                "emission: .svg or .png."),
 };
 
 /// A share of the incident light, its column and its estimate.
@@ -98,6 +122,10 @@ void warn_of_unmet_error(const JobRun& run, const RayBudget& budget,
 Result spectrophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
   warn_if_nothing_is_kept(run);
+  // Other tables and charts, of other wavelengths.
+  if (run.args.flag("fluorescence")) return fluorescence_result(run);
+  if (!run.args.given("wavelengths"))
+    fail({}, "{} is needed: {}", run.args.spelled("wavelengths"), kWavelengthsParam.doc);
   // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;
   const int64_t by_default = run.args.given("se") ? kMostRays : kRays;

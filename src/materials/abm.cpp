@@ -1,6 +1,7 @@
 #include "core/material.h"
 #include "core/math/sampling.h"
 #include "leaf/walk/batch_walk.h"
+#include "materials/leaf_fluorescence.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/surface_lobe.h"
 
@@ -165,7 +166,7 @@ class AbmFromLightBsdf final : public AbmBsdf {
 
 // Material "abm": random walks through the leaf's tissue. A hit makes one tissue for each active lane; all of them
 // share the walk.
-class Abm final : public Material {
+class Abm final : public Material, public FluorescentMaterial {
  public:
   explicit Abm(const Params& p)
       : leaf_(p),
@@ -187,6 +188,11 @@ class Abm final : public Material {
     const LeafLanes lanes = leaf_at(hit.at, lambda, arena);
     if (leaf_.incident() == Incident::light) return arena.make<AbmFromLightBsdf>(lanes, absorption_);
     return arena.make<AbmBsdf>(lanes, absorption_);
+  }
+
+  std::shared_ptr<const Fluorescence> fluorescence(const Preparation&) const override {
+    leaf_.refuse_varying_fluorescence();
+    return std::make_shared<const WalkedFluorescence>(leaf_, absorption_);
   }
 
  private:

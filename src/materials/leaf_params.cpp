@@ -32,6 +32,12 @@ constexpr Param kOthers[] = {
      .list = true},
     {.name = "pigmentconcentrations", .kind = ParamKind::float_texture, .unit = leaf::kMassPerVolume, .range = {0, 100},
      .doc = "Concentrations of these pigments in the mesophyll, one for each file.", .list = true},
+    {.name = "fluorescingpigments", .kind = ParamKind::integer, .default_value = 0, .range = {0, 100},
+     .doc = "Number of these pigments, from the first on, whose absorption excites fluorescence, as that of chlorophyll "
+            "does."},
+    {.name = "emission", .kind = ParamKind::string,
+     .doc = "Spectrum file (.spd, .csv) of the fluorescence inside the tissue: wavelength in nm and density of photons, "
+            "of any unit; by default two Gaussians (docs/fluorescence.md)."},
     {.name = "sieve", .kind = ParamKind::boolean,
      .doc = "Absorption with the sieve and detour effects (Baranoski and Eng 2007); by default the specimen's, which "
             "is false for soybean and maize."},
@@ -54,6 +60,12 @@ Param param_of(const LeafNumber& n) {
 Incident incident_of(std::string_view word) {
   if (word == "reciprocal") return Incident::reciprocal;
   return word == "light" ? Incident::light : Incident::traced;
+}
+
+leaf::EmissionShape emission_of(const Params& p) {
+  if (!p.given("emission")) return {};
+  const std::filesystem::path file = p.file("emission");
+  return {spectrum_name(file), read_spd_points(file, p.where("emission")), p.where("emission")};
 }
 
 }  // namespace
@@ -102,7 +114,8 @@ LeafParams::LeafParams(const Params& p)
       pigments_where_(p.where("pigments")),
       tissue_(leaf::find_specimen(specimen_)->params),
       incident_(incident_of(p.string("incident"))),
-      depth_(read(p)) {}
+      depth_(read(p)),
+      emission_(emission_of(p)) {}
 
 leaf::DepthMap LeafParams::read(const Params& p) {
   Varying varying;
@@ -133,6 +146,7 @@ void LeafParams::read_pigments(const Params& p, Varying& varying) {
   // Beyond a file's range its first or last value is used here; check_wavelengths rejects such renders.
   const auto files = p.files("pigments");
   const auto concentrations = p.float_textures("pigmentconcentrations");
+  const auto fluorescing = static_cast<size_t>(p.integer("fluorescingpigments"));
   if (files.size() != concentrations.size())
     fail(p.where(files.size() < concentrations.size() ? "pigmentconcentrations" : "pigments"),
          "{} pigments have {} concentrations: one for each is needed", files.size(), concentrations.size());
@@ -141,6 +155,7 @@ void LeafParams::read_pigments(const Params& p, Varying& varying) {
     pigment_data_.push_back({files[i].string(), spectrum->range_nm()});
     leaf::Pigment& pigment = tissue_.pigments.emplace_back();
     pigment.concentration = concentrations[i]->range().max;
+    pigment.fluoresces = i < fluorescing;
     for (size_t k = 0; k < leaf::kAbsorptionGrid.size(); ++k)
       pigment.specific_absorption.push_back(double(spectrum->at(float(leaf::kAbsorptionGrid.nm(k)))));
     if (!concentrations[i]->is_constant())
@@ -159,6 +174,11 @@ void LeafParams::reject_wall_textures(const Params& p) const {
     if (number->is_structure())
       fail(p.where(number->name), "{} takes no texture for \"{}\": each texel would need its own table; abm takes one",
            p.plugin(), number->name);
+}
+
+void LeafParams::refuse_varying_fluorescence() const {
+  if (!is_constant())
+    fail(where_, "the fluorescence of a leaf with textures is not computed: give its parameters as numbers");
 }
 
 void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {

@@ -6,6 +6,7 @@
 
 #include "core/params.h"
 #include "core/wavelengths.h"
+#include "leaf/fluorescence/emission.h"
 #include "leaf/table/depth_map.h"
 #include "leaf/tissue/specimens.h"
 #include "materials/lobes/incident.h"
@@ -58,9 +59,15 @@ class LeafParams {
   /// Name of the specimen, for the log.
   std::string specimen() const { return specimen_; }
 
+  /// Distribution of the wavelengths of fluorescence.
+  const leaf::EmissionShape& emission() const { return emission_; }
+
   /// Throws InputError if a texture gives the aspect ratio of an inner wall: for materials whose tables hold for one
   /// tissue. The cuticle affects the surface alone.
   void reject_wall_textures(const Params& p) const;
+
+  /// Throws InputError if the leaf varies over its surface: fluorescence is computed for one tissue.
+  void refuse_varying_fluorescence() const;
 
   /// Throws InputError if the optical constants or a pigment's data do not cover the wavelengths.
   void check_wavelengths(const WavelengthStrategy& wavelengths) const;
@@ -85,6 +92,7 @@ class LeafParams {
   std::vector<PigmentData> pigment_data_;
   Incident incident_;
   leaf::DepthMap depth_;
+  leaf::EmissionShape emission_;
 };
 
 }  // namespace frond

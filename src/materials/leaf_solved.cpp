@@ -6,6 +6,7 @@
 #include "leaf/table/mode_table_cache.h"
 #include "leaf/table/mode_table_file.h"
 #include "leaf/table/reciprocal_modes.h"
+#include "materials/leaf_fluorescence.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/solved_bsdf.h"
@@ -30,7 +31,7 @@ constexpr Param kOwn[] = {
 const std::vector<Param> kLeafSolved = with_leaf_params(kOwn);
 
 /// Leaf by the solved walk of `abm`: the same BSDF without noise.
-class LeafSolved final : public Material {
+class LeafSolved final : public Material, public FluorescentMaterial {
  public:
   explicit LeafSolved(const Params& p)
       : leaf_(p),
@@ -76,6 +77,14 @@ class LeafSolved final : public Material {
   }
 
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
+
+  std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const override {
+    if (file_.is_given()) fail(file_.where(), "a mode table has no fluorescence: give the leaf's parameters instead");
+    leaf_.refuse_varying_fluorescence();
+    const auto make = [&] { return leaf::FluorescenceTable(leaf_.tissue(), preparation.pool); };
+    const std::string key = "fluorescence table " + describe(leaf_.tissue());
+    return std::make_shared<const SolvedFluorescence>(leaf_, preparation.share<leaf::FluorescenceTable>(key, make));
+  }
 
  private:
   using Selection = leaf::ModeLookup::Selection;

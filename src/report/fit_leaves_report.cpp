@@ -31,7 +31,7 @@ void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Ta
   // Parameters that follow others, then parameters of the specimen.
   for (const bool follows : {true, false})
     for (const LeafNumber& n : leaf::leaf_parameters())
-      if (!n.is_fitted() && n.action != leaf::LeafAction::surface && n.follows.empty() != follows && is_stated(n))
+      if (!n.is_fitted() && n.changes_shares() && n.follows.empty() != follows && is_stated(n))
         table.add(std::string(n.name), leaf.error.empty() ? n.value(leaf.result.params) : kNone);
   table.add("undetermined", fmt::format("{}", fmt::join(undetermined, " ")));
 }

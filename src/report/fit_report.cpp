@@ -36,8 +36,7 @@ std::vector<const LeafNumber*> stated_numbers(const FitReport& report) {
   std::vector<const LeafNumber*> all;
   for (const bool only_bifacial : {false, true})
     for (const LeafNumber& n : leaf::leaf_parameters())
-      if (n.only_bifacial == only_bifacial && n.action != leaf::LeafAction::surface &&
-          leaf::has_number(report.result.params.structure, n))
+      if (n.only_bifacial == only_bifacial && n.changes_shares() && leaf::has_number(report.result.params.structure, n))
         all.push_back(&n);
   return all;
 }

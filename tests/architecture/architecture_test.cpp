@@ -61,6 +61,7 @@ const std::map<std::string, Layers> kAllowedInside{
       {"walk", {"tissue"}},
       {"solve", {"tissue"}},
       {"table", {"tissue", "walk", "solve"}},
+      {"fluorescence", {"tissue", "walk", "solve", "table"}},
       {"fit", {"tissue", "solve", "table"}}}},
     {"materials", {{"lobes", {}}, {"measured", {"lobes"}}, {"", {"lobes", "measured"}}}},
     {"render", {{"film", {}}, {"parts", {"film"}}, {"", {"film", "parts"}}}},

@@ -301,10 +301,11 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const ConsoleLog log;
   std::set<std::string_view> named;
   for (const Param& p : leaf_params()) {
-    if (p.name.starts_with("pigment")) continue;  // one needs the other
+    if (p.name.starts_with("pigment") || p.name == "emission") continue;  // files, and what needs them
     const std::string name(p.name);
     ParsedParam given = number("float", name, {p.range.max});
     if (p.kind == ParamKind::boolean) given = flag(name, true);
+    if (p.kind == ParamKind::integer) given = number("integer", name, {p.range.max});
     if (p.kind == ParamKind::string) given = words(name, {std::string(p.choices.back())});
     Resolver resolver;
     const auto material = info.make(Params(info, {"", {}, {words("tablefile", {path}), given}}, resolver));
@@ -314,7 +315,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
             fmt::format("warning: \"{}\" has no effect with \"tablefile\"", name)) != std::string::npos)
       named.insert(p.name);
   }
-  std::set<std::string_view> expected{"absorption", "sieve"};
+  std::set<std::string_view> expected{"absorption", "sieve", "fluorescingpigments"};
   for (const leaf::LeafNumber& n : leaf::leaf_parameters()) expected.insert(n.name);
   expected.erase("cuticleaspect");
   EXPECT_EQ(named, expected);

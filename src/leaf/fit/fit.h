@@ -44,7 +44,7 @@ struct FitRequest {
   AbsorptionTables absorption_tables = AbsorptionTables::prospect;
   /// A parameter that is kept at a given value.
   struct Fixed {
-    /// Name of a parameter that is not LeafAction::surface or, with `per_area`, of an area content.
+    /// Of a parameter that changes reflectance and transmittance, or, per area, of an area content.
     std::string name;
     double value;
     bool per_area = false;  ///< `value` is the content, kg/m^2 (leaf/tissue/area_content.h)

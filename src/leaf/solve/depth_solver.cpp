@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "leaf/solve/lobe_mean.h"
+#include "leaf/solve/epidermis.h"
 #include "leaf/solve/quadrature.h"
 #include "leaf/tissue/fresnel.h"
 
@@ -17,49 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-/// Media of the leaf.
-constexpr size_t kAdaxial = Chain::kFirst, kUpper = 2, kAir = 3, kLower = 4, kAbaxial = Chain::kLast;
-
-/// Distribution of a lobe's rays over the nodes; division by the sum replaces the cut and conserves energy exactly.
-RowVectorXd spread(const Chain& chain, const Lobe& lobe, double mu_axis) {
-  const Directions& to = chain.directions(kAdaxial);
-  const VectorXd axis = VectorXd::Constant(1, mu_axis);
-  const RowVectorXd lobe_means = chain.means() ? chain.means()->get(lobe.exponent()).row(mu_axis, to.mu)
-                                               : RowVectorXd(lobe_modes(lobe.exponent(), axis, to.mu, 1)[0].row(0));
-  const RowVectorXd row = lobe_means.cwiseProduct(to.weight.transpose());
-  return row / row.sum();
-}
-
-Eigen::PartialPivLU<MatrixXd> one_minus(const MatrixXd& m) {
-  return Eigen::PartialPivLU<MatrixXd>(MatrixXd::Identity(m.rows(), m.cols()) - m);
-}
-
-/// An epidermis, eliminated.
-struct Epidermis {
-  /// From light that moves inward there to the mesophyll's nodes, inward; the last column is the share that leaves.
-  MatrixXd inward;
-  MatrixXd back;  ///< from light that moves outward in the mesophyll to its nodes, inward
-  VectorXd out;   ///< and the share of it that leaves
-};
-
-/// `medium`: of the epidermis; `inner`: of the mesophyll next to it. Matrices as in Chain::branch.
-Epidermis eliminate(const Chain& chain, size_t medium, size_t inner) {
-  const bool up = medium < inner;  // the direction outward
-  const MatrixXd outer = chain.branch(0, medium, up, false), inside = chain.branch(0, medium, !up, false);
-  const MatrixXd entering = chain.branch(0, medium, !up, true), leaving = chain.branch(0, inner, up, true);
-  const VectorXd leaves = chain.probability(medium, up, true);
-  MatrixXd sources(chain.count(medium), chain.count(inner) + 1);
-  sources << entering, inside * leaves;
-  Epidermis result;
-  result.inward = one_minus(inside * outer).solve(sources);
-  MatrixXd outward = outer * result.inward;
-  outward.rightCols(1) += leaves;
-  const MatrixXd from_inner = leaving * outward;
-  result.back = chain.branch(0, inner, up, false) + from_inner.leftCols(chain.count(inner));
-  result.out = from_inner.rightCols(1);
-  return result;
-}
-
 }  // namespace
 
 DepthSolver::DepthSolver(const Chain& chain, std::span<const double> theta_deg)
@@ -67,20 +24,7 @@ DepthSolver::DepthSolver(const Chain& chain, std::span<const double> theta_deg)
   const Epidermis top = eliminate(chain, kAdaxial, kUpper), bottom = eliminate(chain, kAbaxial, kLower);
   back_above_ = top.back, out_above_ = top.out, back_below_ = bottom.back, out_below_ = bottom.out;
 
-  // The air space: rays down in it are `down` of (rays down in the upper part, rays up in the lower part).
-  const MatrixXd floor = chain.branch(0, kAir, false, false), ceiling = chain.branch(0, kAir, true, false);
-  const MatrixXd to_lower = chain.branch(0, kAir, false, true), to_upper = chain.branch(0, kAir, true, true);
-  const Index above = mu_above_.size(), below = mu_below_.size(), all = above + below;
-  MatrixXd sources(chain.count(kAir), all);
-  sources << floor * to_upper, to_lower;
-  const MatrixXd down = one_minus(floor * ceiling).solve(sources);
-  MatrixXd up = ceiling * down;
-  up.leftCols(above) += to_upper;
-  inner_.resize(all, all);
-  inner_.topRows(above) = chain.branch(0, kUpper, false, true) * down;
-  inner_.bottomRows(below) = chain.branch(0, kLower, true, true) * up;
-  inner_.topLeftCorner(above, above) += chain.branch(0, kUpper, false, false);
-  inner_.bottomRightCorner(below, below) += chain.branch(0, kLower, true, false);
+  inner_ = eliminate_air_space(chain);
 
   const Tissue& tissue = chain.tissue();
   const Lobe& lobe = *tissue.lobe(0, false, true);

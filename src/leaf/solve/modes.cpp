@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "leaf/solve/chain.h"
+#include "leaf/solve/epidermis.h"
 #include "leaf/tissue/fresnel.h"
 
 namespace frond::leaf {
@@ -56,19 +57,6 @@ class Port {
   std::vector<MatrixXd> lobes_;  ///< [mode](node, direction)
   VectorXd kept_;
 };
-
-/// Cosines of the inner directions that refract into the directions of the given sines. The last node of a grid lies
-/// beyond the horizon, for interpolation below it; where the index is too low for a direction inside, the most grazing
-/// one is taken.
-VectorXd inner_cosines(std::span<const double> sines, double n) {
-  VectorXd mu(static_cast<Index>(sines.size()));
-  for (Index i = 0; i < mu.size(); ++i) {
-    constexpr double kMost = 0.9999;
-    const double sine = std::clamp(sines[static_cast<size_t>(i)] / n, -kMost, kMost);
-    mu[i] = std::sqrt(1 - sine * sine);
-  }
-  return mu;
-}
 
 /// -1 for negative sines in odd modes.
 VectorXd signs(std::span<const double> sines, size_t mode) {

@@ -10,6 +10,13 @@ double specific(const LeafNumber& n, AbsorptionTables tables, double lambda_nm, 
   return n.published ? published.*n.published : 1;
 }
 
+/// Absorption coefficient of a pigment, 1/m.
+double coefficient(const Pigment& pigment, double lambda_nm) {
+  const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
+  const std::vector<double>& s = pigment.specific_absorption;
+  return pigment.concentration * ((1 - t) * s[i] + t * s[i + 1]);
+}
+
 }  // namespace
 
 const std::vector<Absorber>& absorbers() {
@@ -43,12 +50,20 @@ double absorption_coefficient(const TissueParams& p, double lambda_nm) {
           a.amount(p) * specific(n, p.absorption_tables, lambda_nm, published, prospect);
     }
   sum += others;
-  const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
-  for (const Pigment& pigment : p.pigments) {
-    const std::vector<double>& s = pigment.specific_absorption;
-    sum += pigment.concentration * ((1 - t) * s[i] + t * s[i + 1]);
-  }
+  for (const Pigment& pigment : p.pigments) sum += coefficient(pigment, lambda_nm);
   return sum;
+}
+
+double fluorescing_share(const TissueParams& p, double lambda_nm) {
+  const Constants published = constants_at(lambda_nm);
+  const ProspectConstants prospect = prospect_constants_at(lambda_nm);
+  double sum = 0;
+  for (const Absorber& a : absorbers())
+    if (a.first().fluoresces)
+      sum += a.amount(p) * specific(a.first(), p.absorption_tables, lambda_nm, published, prospect);
+  for (const Pigment& pigment : p.pigments)
+    if (pigment.fluoresces) sum += coefficient(pigment, lambda_nm);
+  return sum > 0 ? std::min(1.0, sum / absorption_coefficient(p, lambda_nm)) : 0;
 }
 
 std::vector<double> absorption_coefficients(const TissueParams& params) {

@@ -58,7 +58,11 @@ double specific_absorption(const LeafNumber& number, AbsorptionTables tables, do
 /// concentration times specific absorption.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
-/// The same at every wavelength of kAbsorptionGrid.
+/// Returns the share of that coefficient that is of constituents whose absorption excites fluorescence; 0 where nothing
+/// absorbs.
+double fluorescing_share(const TissueParams& params, double lambda_nm);
+
+/// The absorption coefficient at every wavelength of kAbsorptionGrid.
 std::vector<double> absorption_coefficients(const TissueParams& params);
 
 }  // namespace frond::leaf

@@ -79,7 +79,9 @@ std::string describe(const TissueParams& p) {
     text += fmt::vformat(kProspectHead, values);
   static const TissueParams published;
   for (const LeafNumber& n : leaf_parameters()) {
-    if (contains_placeholder(kHead, n) || contains_placeholder(kProspectHead, n) || n.value(p) == n.value(published))
+    // Tables of reflectance and transmittance hold for any fluorescence.
+    if (n.action == LeafAction::emission || contains_placeholder(kHead, n) || contains_placeholder(kProspectHead, n) ||
+        n.value(p) == n.value(published))
       continue;
     text += fmt::format("# {} {}", n.label.empty() ? n.name : n.label, n.value(p));
     if (!n.unit.empty()) text += fmt::format(" {}", n.unit);

@@ -23,6 +23,7 @@ enum class LeafAction : uint8_t {
   absorption,  ///< of a constituent of the mesophyll, in proportion to the number
   structure,   ///< of layers and walls: how much light is reflected and transmitted, and where
   surface,     ///< shape of the reflection at the surface, but not its share
+  emission,    ///< light at other wavelengths than the absorbed one; reflectance and transmittance are unchanged
 };
 
 inline constexpr std::string_view kMassPerVolume = "kg/m^3";
@@ -46,6 +47,7 @@ struct LeafNumber {
   double Constants::*published = nullptr;
   double ProspectConstants::*prospect = nullptr;
   std::span<const SpectrumNode> spectrum = {};
+  bool fluoresces = false;  ///< the light that it absorbs excites fluorescence
   /// Name of the constituent that absorbs alike. A fit keeps the ratio of both.
   std::string_view follows = "";
   AreaContent content = {};
@@ -58,6 +60,8 @@ struct LeafNumber {
   constexpr bool is_parameter() const { return !doc.empty(); }
   constexpr bool is_fitted() const { return fit_range.max > 0; }
   constexpr bool is_structure() const { return action == LeafAction::structure; }
+  /// Whether reflectance and transmittance depend on the number.
+  constexpr bool changes_shares() const { return action != LeafAction::surface && action != LeafAction::emission; }
   constexpr bool absorbs() const { return action == LeafAction::absorption; }
   constexpr bool acts_by_depth() const { return absorbs() || action == LeafAction::length; }
   /// Whether only PROSPECT-D has the constituent.

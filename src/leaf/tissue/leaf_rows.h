@@ -18,11 +18,12 @@ inline constexpr LeafNumber kLeafRows[] = {
      .member = &TissueParams::mesophyll_fraction},
     {.name = "chlorophylla", .action = LeafAction::absorption, .unit = kMassPerVolume, .range = {0, 100},
      .doc = "Chlorophyll a in the mesophyll; by default the specimen's.", .quantity = Quantity::chlorophyll,
-     .published = &Constants::chlorophyll, .prospect = &ProspectConstants::chlorophyll,
+     .published = &Constants::chlorophyll, .prospect = &ProspectConstants::chlorophyll, .fluoresces = true,
      .content = {"chlorophyll", kMicrogramsPerCm2, "Cab"}, .fit_range = {1e-3, 100}},
     {.name = "chlorophyllb", .action = LeafAction::absorption, .unit = kMassPerVolume, .range = {0, 100},
      .doc = "Chlorophyll b in the mesophyll; by default the specimen's.", .quantity = Quantity::chlorophyll,
-     .published = &Constants::chlorophyll, .prospect = &ProspectConstants::chlorophyll, .follows = "chlorophylla",
+     .published = &Constants::chlorophyll, .prospect = &ProspectConstants::chlorophyll, .fluoresces = true,
+     .follows = "chlorophylla",
      .content = {"chlorophyll", kMicrogramsPerCm2, "Cab"}},
     {.name = "carotenoids", .action = LeafAction::absorption, .unit = kMassPerVolume, .range = {0, 100},
      .doc = "Carotenoids in the mesophyll; by default the specimen's.", .quantity = Quantity::carotenoids,
@@ -86,6 +87,10 @@ inline constexpr LeafNumber kLeafRows[] = {
             "index of 1.13 at 550 nm, as of a surface that hardly reflects; by default the specimen's, 1 in the "
             "published model.", .takes_texture = false, .member = &TissueParams::cuticle_refractivity,
      .label = "relative refractivity of the cuticle", .fit_range = {0.2, 1.3}, .little = 1},
+    {.name = "fluorescence", .action = LeafAction::emission, .range = {0, 1},
+     .doc = "Quantum yield of fluorescence: photons emitted per photon that chlorophyll absorbs, about 0.01 in "
+            "sunlight; 0: none (docs/fluorescence.md).", .takes_texture = false,
+     .member = &TissueParams::fluorescence},
 };
 // clang-format on
 

@@ -75,10 +75,15 @@ class TissueModel {
   std::vector<Optics> optics_;  ///< at kAbsorptionGrid; linear in between, like the constants
 };
 
+/// Returns the optical depth along a ray at |cos| `c` from the normal, as in `survival`.
+inline double path_depth(double optical_depth, double c, bool sieve_and_detour) {
+  return optical_depth / (sieve_and_detour ? std::cos(c) : c);
+}
+
 /// Returns the share of light that the mesophyll transmits, for a ray at |cos| `c` from the normal: Beer's law; with
 /// the sieve and detour effects cos(c) replaces c (Baranoski and Eng 2007).
 inline double survival(double optical_depth, double c, bool sieve_and_detour) {
-  return optical_depth > 0 ? std::exp(-optical_depth / (sieve_and_detour ? std::cos(c) : c)) : 1;
+  return optical_depth > 0 ? std::exp(-path_depth(optical_depth, c, sieve_and_detour)) : 1;
 }
 
 }  // namespace frond::leaf

@@ -17,6 +17,7 @@ enum class Structure : uint8_t {
 struct Pigment {
   double concentration = 0;                 ///< in the mesophyll, kg/m^3
   std::vector<double> specific_absorption;  ///< m^2/kg, at kAbsorptionGrid
+  bool fluoresces = false;                  ///< as chlorophyll does
 
   friend bool operator==(const Pigment&, const Pigment&) = default;
 };
@@ -45,6 +46,7 @@ struct TissueParams {
   double spongy_share = 0;
   /// Refractivity (index - 1) of the cuticle and epidermis, relative to the published one; above 0.
   double cuticle_refractivity = 1;
+  double fluorescence = 0;        ///< photons emitted per photon that a fluorescing constituent absorbs, in [0, 1]
   bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta
 
   /// The number of this name in scene files, which kLeafNumbers must have.

@@ -79,9 +79,30 @@ class Walker {
     if (tissue().air_space_moves) above_ = rng.uniform_double();
   }
 
+  /// Starts inside a medium that absorbs. `above`: share of the mesophyll above the air space, where that moves.
+  Walker(const Tissues& tissues, size_t hero, const Vec3d& direction, size_t medium, double above,
+         Absorption absorption, RandomStream& rng)
+      : tissues_(tissues),
+        rng_(rng),
+        above_(above),
+        hero_(hero),
+        medium_(medium),
+        absorption_(absorption),
+        up_(direction.z > 0) {
+    v_.fill(direction);
+    density_.fill(1);
+    share_.fill(1);
+  }
+
   bool inside() const { return medium_ != 0 && medium_ != Tissue::kBeneath; }
   bool up() const { return up_; }
   size_t medium() const { return medium_; }
+  /// Share of the mesophyll above the air space, where that moves.
+  double above() const { return above_; }
+  /// Whether the ray can never leave: see `step`.
+  bool is_trapped() const { return total_mirrors_ >= 2; }
+  /// Attenuation of the hero on its way through the whole medium: -ln of the share that is transmitted.
+  double attenuation() const { return path_depth(depth(hero_), std::abs(direction().z), tissue().sieve_and_detour); }
   /// Direction of the hero.
   const Vec3d& direction() const { return v_[hero_]; }
   /// Ideal direction at one wavelength, before a lobe perturbs it.
@@ -126,14 +147,15 @@ class Walker {
   }
 
   /// Executes one event. Returns false if the ray is absorbed or can never leave: between two interfaces that reflect
-  /// it totally without perturbing it, it continues until it is absorbed, without end in a clear medium.
+  /// it totally without perturbing it, it continues until it is absorbed, without end in a clear medium. `way`: share
+  /// of the medium that lies ahead.
   template <class Connect>
-  bool step(const Connect& connect) {
-    if (!pass_medium()) return false;
+  bool step(const Connect& connect, double way = 1) {
+    if (!pass_medium(way)) return false;
     const Crossings crossings = next_crossings();
     const bool refracts = rng_.uniform_double() >= crossings[hero_].reflectance;
     scatter(refracts, crossings, sample_disk(rng_), connect);
-    return total_mirrors_ < 2;
+    return !is_trapped();
   }
 
   /// Call when the ray has left the leaf: replaces the density of the last direction drawn inside by the density of the
@@ -178,12 +200,12 @@ class Walker {
     return medium_ == 2 ? whole * above_ : whole * (1 - above_);
   }
 
-  /// Passes the medium up to the next interface. Returns false if the ray is absorbed.
-  bool pass_medium() {
+  /// Passes the medium, or the share `way` of it, up to the next interface. Returns false if the ray is absorbed.
+  bool pass_medium(double way) {
     Values survives;
     bool clear = true;
     for (size_t i = 0; i < K; ++i) {
-      survives[i] = survival(depth(i), std::abs(v_[i].z), tissue().sieve_and_detour);
+      survives[i] = survival(depth(i) * way, std::abs(v_[i].z), tissue().sieve_and_detour);
       clear = clear && survives[i] == 1;
     }
     if (clear) return true;

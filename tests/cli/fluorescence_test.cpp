@@ -1,0 +1,74 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "report/chart.h"
+#include "tests/cli/command.h"
+#include "tests/cli/table.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::HasSubstr;
+
+Outcome measured(const std::string& material, std::vector<std::string> more) {
+  more.insert(more.begin(), {"spectrophotometer", material, "--fluorescence", "--no-cache"});
+  return frond_command(more);
+}
+
+TEST(FluorescenceCommand, WritesAMatrixAndABalance) {
+  const TestFolder folder("fluorescence");
+  const std::string json_file = folder.name_of("f.json");
+  const Outcome o = measured("abm,fluorescence=0.01",
+                             {"--with", "leaf_solved,fluorescence=0.01", "--excitation", "440,550", "--emission",
+                              "685:740:55", "--angles", "8,120", "--rays", "200", "--csv", "-", "--json", json_file});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const CsvTable csv = parse_csv(o.out);
+  EXPECT_EQ(csv.names, (std::vector<std::string>{"theta_deg", "excitation_nm", "emission_nm", "Mb", "Mb_se", "Mf",
+                                                 "Mf_se", "rays", "material"}));
+  ASSERT_EQ(csv.rows.size(), 16u);
+  for (size_t i = 0; i < csv.rows.size(); ++i) {
+    const bool is_solved = i >= 8;
+    EXPECT_EQ(csv.number(i, "theta_deg"), i % 8 < 4 ? 8 : 120);
+    EXPECT_EQ(csv.number(i, "excitation_nm"), i % 4 < 2 ? 440 : 550);
+    EXPECT_EQ(csv.number(i, "emission_nm"), i % 2 == 0 ? 685 : 740);
+    EXPECT_EQ(csv.number(i, "rays"), is_solved ? 0 : 200);
+    EXPECT_EQ(csv.number(i, "Mb_se") == 0, is_solved);
+    EXPECT_GT(csv.number(i, "Mb"), 0);
+  }
+  EXPECT_THAT(o.out, HasSubstr("# material: abm,fluorescence=0.01; emission: Gaussians at 688 and 746 nm"));
+  EXPECT_THAT(o.out, HasSubstr("# Mb: photons per nm of emission"));
+  const auto json = nlohmann::json::parse(bytes_of(json_file));
+  ASSERT_EQ(json["balance"].size(), 8u);
+  for (const auto& row : json["balance"]) {
+    EXPECT_NEAR(row["residual"], 0, 1e-4);
+    EXPECT_GT(row["escape"], 0);
+    EXPECT_LT(row["escape"], 1);
+  }
+}
+
+TEST(FluorescenceCommand, DrawsMaps) {
+  const TestFolder folder("fluorescence_map");
+  const std::string chart = folder.name_of("map.svg");
+  const Outcome o = measured("leaf_solved,fluorescence=0.01", {"--excitation", "400:750:50", "--plot", chart});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(bytes_of(chart), HasSubstr("lit side (Mb): leaf_solved,fluorescence=0.01"));
+  EXPECT_THAT(measured("leaf_solved", {"--excitation", "440", "--plot", chart}).err,
+              HasSubstr("at least two wavelengths of each are needed"));
+}
+
+TEST(FluorescenceCommand, SaysWhatIsMissing) {
+  EXPECT_THAT(measured("diffuse", {}).err, HasSubstr("diffuse has no fluorescence; leaf_solved, abm have"));
+  EXPECT_THAT(measured("abm", {"--excitation", "440", "--emission", "740", "--rays", "2"}).err,
+              HasSubstr("give a quantum yield, as in abm,fluorescence=0.01"));
+  EXPECT_THAT(measured("abm", {"--wavelengths", "550"}).err, HasSubstr("--wavelengths"));
+  EXPECT_THAT(measured("abm", {"--excitation", "300:400:50"}).err, HasSubstr("from 400 to 750"));
+  EXPECT_THAT(measured("abm", {"--emission", "740,700"}).err, HasSubstr("ascending order"));
+  EXPECT_THAT(frond_command({"spectrophotometer", "abm", "--wavelengths", "550", "--excitation", "440"}).err,
+              HasSubstr("--fluorescence"));
+}
+
+}  // namespace
+}  // namespace frond
