@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/chart.h"
-#include "tests/cli/command.h"
+#include "tests/support/command_test.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
 

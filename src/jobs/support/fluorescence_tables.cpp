@@ -4,7 +4,6 @@
 
 #include "instruments/fluorescence_matrix.h"
 #include "jobs/record/common_params.h"
-#include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/excitation_emission_chart.h"
 #include "scene/leaf_models.h"
@@ -42,7 +41,7 @@ Specimen specimen_of(const JobRun& run, const std::string& text) {
   Session& session = run.session();
   const std::filesystem::path& cache = run.context.options().cache;
   const OneWavelength light(kEmission_nm.min);  // instruments have no film; fluorescence has wavelengths of its own
-  Specimen specimen{text, ready_material(text, session.registry(), light, session.pool(), run.log(), cache), nullptr};
+  Specimen specimen{text, prepared_material(text, session.registry(), light, session.pool(), run.log(), cache), nullptr};
   const auto* fluorescent = dynamic_cast<const FluorescentMaterial*>(specimen.material.get());
   if (!fluorescent)
     fail({}, "{} has no fluorescence; {} have, with a quantum yield: NAME,fluorescence=0.01", text,

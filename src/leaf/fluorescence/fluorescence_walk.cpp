@@ -31,7 +31,7 @@ template <class Emit>
 void excite(const FluorescingTissue& leaf, const Vec3d& wi, Absorption absorption, RandomStream& rng,
             const Emit& emit) {
   Walker<1> ray({&leaf.excited}, 0, wi, absorption, rng);
-  if (!ray.enter(ray.ahead(), sample_disk(rng), kNoConnection)) return;
+  if (!ray.enter(ray.next_crossings(), sample_disk(rng), kNoConnection)) return;
   for (StopPoll poll; ray.inside(); poll()) {
     const double before = ray.weights()[0], attenuation = ray.attenuation();
     const bool is_weighted = absorption == Absorption::weighted;

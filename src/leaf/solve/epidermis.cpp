@@ -22,7 +22,7 @@ Eigen::PartialPivLU<MatrixXd> one_minus(const MatrixXd& m) {
 RowVectorXd spread(const Chain& chain, const Lobe& lobe, double mu_axis) {
   const Directions& to = chain.directions(kAdaxial);
   const VectorXd axis = VectorXd::Constant(1, mu_axis);
-  const RowVectorXd lobe_means = chain.means() ? chain.means()->value(lobe.exponent()).toward(mu_axis, to.mu)
+  const RowVectorXd lobe_means = chain.means() ? chain.means()->get(lobe.exponent()).row(mu_axis, to.mu)
                                                : RowVectorXd(lobe_modes(lobe.exponent(), axis, to.mu, 1)[0].row(0));
   const RowVectorXd row = lobe_means.cwiseProduct(to.weight.transpose());
   return row / row.sum();
@@ -43,7 +43,7 @@ Epidermis eliminate(const Chain& chain, size_t medium, size_t inner, const Matri
   const bool up = medium < inner;  // the direction outward
   const MatrixXd outer = chain.branch(0, medium, up, false), inside = chain.branch(0, medium, !up, false);
   const MatrixXd entering = chain.branch(0, medium, !up, true), leaving = chain.branch(0, inner, up, true);
-  const VectorXd leaves = chain.chance(medium, up, true);
+  const VectorXd leaves = chain.probability(medium, up, true);
   MatrixXd sources(chain.count(medium), chain.count(inner) + 1);
   sources << entering, inside * leaves;
   Epidermis result;
