@@ -209,8 +209,10 @@ def structure(scene: str | os.PathLike | Scene, zenith: float | Sequence[float] 
     json: JSON file to write; - is standard output.
     plot: Chart against the zenith angle: .svg or .png."""
 
-def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
-    """Measure a material's reflectance, transmittance and absorptance.
+def spectrophotometer(material, wavelengths: float | Sequence[float] | str | None = None, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, fluorescence: bool = False, excitation: float | Sequence[float] | str = '400:750:10', emission: float | Sequence[float] | str = '640:850:10', seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
+    """Returns the table of measurements. With fluorescence=True it is the excitation-emission matrix, without wavelengths.
+
+    Measure a material's reflectance, transmittance and absorptance.
 
     material: NAME[,parameter=value...]: material, as in leaf,specimen=maize.
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=... Unit: nm.
