@@ -211,10 +211,10 @@ def test_nothing_is_left_behind(scene_text):
         for _ in range(count):
             scene.render(1).array.sum()
 
-    renders(200)
+    renders(100)
     before = resident()
-    renders(1000)
-    assert resident() - before < 20e6  # an image and its film are 40 kB
+    renders(400)
+    assert resident() - before < 8e6  # an image and its film are 40 kB
 
 
 def test_import_brings_nothing_along():
