@@ -38,7 +38,7 @@ from ._session import default_session
 CHEMISTRY = tuple(name for name, action in _frond.leaf_numbers() if action == "absorption")
 _GEOMETRY = tuple(name for name, action in _frond.leaf_numbers() if action == "length")
 _NUMBERS = tuple(name for name, _ in _frond.leaf_numbers())
-_WORDS = ("specimen", "absorption", "incident")
+_WORDS = ("specimen", "absorption", "incident", *_frond.plate_numbers())
 _RGB_NM = (608.0, 551.0, 455.0)
 _SPECTRUM_NM = numpy.arange(360.0, 830.1, 2.5)
 _COSINE_CELLS = 64

@@ -1,6 +1,7 @@
 #include "common.h"
 #include "instruments/given_wavelengths.h"
 #include "leaf/fit/measured_spectra.h"
+#include "leaf/plates/plate_leaf.h"
 #include "leaf/tissue/absorption.h"
 #include "materials/leaf_file.h"
 #include "render/measured_material.h"
@@ -103,6 +104,12 @@ void bind_leaf(nb::module_& m) {
     for (const leaf::LeafNumber& n : leaf::leaf_parameters())
       numbers.emplace_back(n.name.data(), kActions[static_cast<size_t>(n.action)]);
     return numbers;
+  });
+  // Names of PROSPECT's parameters of a leaf (leaf/plates/plate_leaf.h).
+  m.def("plate_numbers", [] {
+    std::vector<const char*> names;
+    for (const leaf::PlateNumber& n : leaf::plate_numbers()) names.push_back(n.name.data());
+    return names;
   });
   m.def("leaf_chemistry", &leaf_chemistry, "session"_a, "material"_a, "wavelengths"_a);
 }

@@ -63,6 +63,7 @@ struct Param {
   bool required = false;                                ///< an error if the scene does not give it
   PhysicalQuantity quantity = PhysicalQuantity::other;  ///< for a warning if numbers are probably in another unit
   std::span<const std::string_view> choices = {};       ///< allowed strings; empty: any string
+  bool in_place_of_others = false;                      ///< as a file is: sweeps over all parameters leave it out
 };
 
 /// Parameter as a scene file gives it: `"float roughness" [ 0.1 ]`.

@@ -113,7 +113,7 @@ class Sweep {
       const auto pinned = std::ranges::find(options.pinned, p.name, &ParsedParam::name);
       if (pinned != options.pinned.end())
         always_.push_back(*pinned);
-      else
+      else if (!p.in_place_of_others)
         swept_.push_back(&p);
     }
   }
@@ -197,7 +197,9 @@ SweptParams swept_params(const PluginInfo& info, const SweepOptions& options) {
   SweptParams result;
   for (const Param& p : info.params) {
     if (std::ranges::find(options.pinned, p.name, &ParsedParam::name) != options.pinned.end()) continue;
-    const bool low = is_swept_to(p, 0, options), high = is_swept_to(p, 1, options), chosen = !choices(p).empty();
+    const bool is_swept = !p.in_place_of_others;
+    const bool low = is_swept && is_swept_to(p, 0, options), high = is_swept && is_swept_to(p, 1, options),
+               chosen = is_swept && !choices(p).empty();
     const std::string name(p.name);
     if (low || high || chosen) result.varied.push_back(name);
     if (!chosen && !(low && high))

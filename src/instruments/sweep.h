@@ -26,13 +26,14 @@ struct SweepOptions {
 };
 
 /// Returns sets of parameters over a plug-in's declared ranges: the defaults, each end of each parameter's range and
-/// each choice alone, random corners and points inside. File names and other free strings keep their defaults. 1000
-/// replaces an infinite end, and twice the default (at least 1) for points inside. Sets may violate rules between
-/// parameters; the plug-in then rejects them.
+/// each choice alone, random corners and points inside. File names, other free strings and parameters in place of
+/// others keep their defaults. 1000 replaces an infinite end, and twice the default (at least 1) for points inside.
+/// Sets may violate rules between parameters; the plug-in then rejects them.
 std::vector<ParameterSet> parameter_sweep(const PluginInfo& info, const SweepOptions& options);
 
 /// Parameters that the sets of `parameter_sweep` vary, and those that are neither varied nor pinned: free strings,
-/// names, and without `infinite_ends` ranges that have no end. A parameter with one end is in both lists.
+/// names, what stands in place of others, and without `infinite_ends` ranges that have no end. A parameter with one end
+/// is in both lists.
 struct SweptParams {
   std::vector<std::string> varied, unvaried;
 };

@@ -177,6 +177,7 @@ class Abm final : public Material, public FluorescentMaterial {
   void prepare(const Preparation& preparation) override {
     const WavelengthStrategy& wavelengths = preparation.wavelengths;
     leaf_.check_wavelengths(wavelengths);
+    leaf_.log_difference(preparation.log);
     made_.clear();
     if (!leaf_.is_constant()) return;
     fixed_ = !wavelengths.fixed_nm().empty();

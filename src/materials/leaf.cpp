@@ -34,7 +34,7 @@ const std::vector<Param> kLeaf = with_leaf_params(kOwn);
 
 /// Whether a texture gives the aspect ratio of an inner wall, for which no table holds.
 bool has_wall_textures(const Params& p) {
-  const LeafParams leaf(p);
+  const LeafParams leaf(p, LeafParams::Plates::table);
   return leaf.epidermis_aspect() || leaf.spongy_aspect() || leaf.palisade_aspect();
 }
 

@@ -124,7 +124,7 @@ class TwoSidedSpectra {
 class LeafLambert final : public Material {
  public:
   explicit LeafLambert(const Params& p)
-      : leaf_(p),
+      : leaf_(p, LeafParams::Plates::table),
         varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         incidences_(incidences(p)),
         file_(p, {}) {
@@ -180,7 +180,7 @@ class LeafLambert final : public Material {
   TwoSidedSpectra spectra_from_file(const Preparation& preparation) const {
     const leaf::Table& table = *table_of_file_;
     return means(leaf::at_wavelengths(table, file_wavelengths(table.wavelengths_nm, preparation.wavelengths,
-                                                              file_.where(), file_.path().string())),
+                                                              file_.where(), file_.name())),
                  preparation);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/material.h"
 #include "leaf/tissue/absorption.h"
 #include "leaf/tissue/constants.h"
 #include "spectra/check_range.h"
@@ -80,6 +81,13 @@ const std::vector<Param>& leaf_params() {
       for (const LeafNumber& n : leaf::leaf_parameters())
         if (!n.acts_by_depth() && n.takes_texture == takes_texture) all.push_back(param_of(n));
     all.insert(all.end(), std::begin(kOthers), std::end(kOthers));
+    for (const leaf::PlateNumber& n : leaf::plate_numbers())
+      all.push_back({.name = n.name,
+                     .kind = ParamKind::real,
+                     .unit = n.unit,
+                     .range = n.range,
+                     .doc = n.doc,
+                     .in_place_of_others = true});
     return all;
   }();
   return params;
@@ -107,17 +115,52 @@ std::vector<Param> without_reciprocal(std::vector<Param> params) {
   return params;
 }
 
-LeafParams::LeafParams(const Params& p)
+std::optional<leaf::PlateLeaf> plate_leaf(const Params& p) {
+  if (find_param(p.info(), LeafModel::kTableFile) && p.given(LeafModel::kTableFile)) return std::nullopt;
+  const std::span<const leaf::PlateNumber> numbers = leaf::plate_numbers();
+  const auto first = std::ranges::find_if(numbers, [&p](const auto& n) { return p.given(n.name); });
+  if (first == numbers.end()) return std::nullopt;
+  leaf::PlateLeaf leaf;
+  std::string needed;
+  for (const leaf::PlateNumber& n : numbers) {
+    if (n.is_needed) needed += fmt::format("{}{}", needed.empty() ? "" : ", ", n.name);
+    leaf.values.push_back(p.given(n.name) ? p.real(n.name) : 0);
+  }
+  for (const leaf::PlateNumber& n : numbers)
+    if (n.is_needed && !p.given(n.name))
+      fail(p.where(first->name), "a leaf of PROSPECT needs \"{}\" too: {}", n.name, needed);
+  return leaf;
+}
+
+LeafParams::LeafParams(const Params& p, Plates plates)
     // Starts from the specimen's parameters; `read` replaces those that the scene gives.
     : specimen_(p.string("specimen")),
       where_(p.where()),
       pigments_where_(p.where("pigments")),
       tissue_(leaf::find_specimen(specimen_)->params),
       incident_(incident_of(p.string("incident"))),
-      depth_(read(p)),
+      plates_(plate_leaf(p)),
+      depth_(read(p, plates)),
       emission_(emission_of(p)) {}
 
-leaf::DepthMap LeafParams::read(const Params& p) {
+/// Whether PROSPECT's parameters describe what the parameter does: all of R and T, and not the emission.
+static bool is_replaced_by_plates(std::string_view name) {
+  if (const LeafNumber* n = leaf::find_leaf_number(name)) return n->changes_shares();
+  return !leaf::find_plate_number(name) && name != kSpecimen.name && name != "incident" && name != "emission";
+}
+
+leaf::DepthMap LeafParams::read(const Params& p, Plates plates) {
+  if (plates_) {
+    for (const Param& of_leaf : leaf_params())
+      if (is_replaced_by_plates(of_leaf.name) && p.given(of_leaf.name))
+        fail(p.where(of_leaf.name),
+             "\"{}\" has no effect beside PROSPECT's parameters, which are those of the whole leaf", of_leaf.name);
+    if (plates == Plates::walk) {
+      const double cuticle_aspect = tissue_.cuticle_aspect;  // which R and T do not determine
+      tissue_ = leaf::nearest_walk(*plates_).params;
+      tissue_.cuticle_aspect = cuticle_aspect;
+    }
+  }
   Varying varying;
   for (const LeafNumber& n : leaf::leaf_parameters()) {
     if (!p.given(n.name)) continue;
@@ -184,6 +227,13 @@ void LeafParams::refuse_varying_fluorescence() const {
 void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {
   check_range(leaf::kConstantsRange_nm, wavelengths, where_, "leaf optics");
   for (const auto& [file, range_nm] : pigment_data_) check_range(range_nm, wavelengths, pigments_where_, file);
+}
+
+void LeafParams::log_difference(const Log& log) const {
+  if (!plates_) return;
+  const leaf::NearestWalk& walk = leaf::nearest_walk(*plates_);
+  log.info(fmt::format("leaf of PROSPECT: R and T of the walk differ by {:.4f} (RMS), at most {:.4f} (at {:g} nm)",
+                       walk.rmse, walk.largest, walk.largest_nm));
 }
 
 }  // namespace frond

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "core/params.h"
 #include "core/wavelengths.h"
 #include "leaf/fluorescence/emission.h"
+#include "leaf/plates/plate_leaf.h"
 #include "leaf/table/depth_map.h"
 #include "leaf/tissue/specimens.h"
 #include "materials/lobes/incident.h"
@@ -30,8 +33,15 @@ std::vector<Param> without_reciprocal(std::vector<Param> params);
 /// The leaf that a scene describes, from the parameters above.
 class LeafParams {
  public:
-  /// Throws InputError if pigments and their concentrations differ in number, or a file cannot be read.
-  explicit LeafParams(const Params& p);
+  /// What a material makes of PROSPECT's parameters.
+  enum class Plates : uint8_t {
+    walk,   ///< the leaf of the walk that is nearest to them
+    table,  ///< nothing here: TableFileParam has their R and T
+  };
+
+  /// Throws InputError if pigments and their concentrations differ in number, a file cannot be read, or PROSPECT's
+  /// parameters are incomplete or beside those of the tissue.
+  explicit LeafParams(const Params& p, Plates plates = Plates::walk);
 
   /// Constant parameters; where a texture gives a parameter, its largest value.
   const leaf::TissueParams& tissue() const { return tissue_; }
@@ -72,6 +82,9 @@ class LeafParams {
   /// Throws InputError if the optical constants or a pigment's data do not cover the wavelengths.
   void check_wavelengths(const WavelengthStrategy& wavelengths) const;
 
+  /// Logs by how much R and T of the walk differ from PROSPECT's, where its parameters are given.
+  void log_difference(const Log& log) const;
+
  private:
   struct PigmentData {
     std::string file;
@@ -82,7 +95,7 @@ class LeafParams {
   const Aspect& aspect(double leaf::TissueParams::*member) const;
 
   /// Fill in the members before `depth_`.
-  leaf::DepthMap read(const Params& p);
+  leaf::DepthMap read(const Params& p, Plates plates);
   void read_pigments(const Params& p, Varying& varying);
 
   std::string specimen_;
@@ -91,8 +104,13 @@ class LeafParams {
   std::vector<std::pair<const leaf::LeafNumber*, Aspect>> aspects_;  ///< those that vary
   std::vector<PigmentData> pigment_data_;
   Incident incident_;
+  std::optional<leaf::PlateLeaf> plates_;  ///< PROSPECT's parameters
   leaf::DepthMap depth_;
   leaf::EmissionShape emission_;
 };
+
+/// Returns the leaf of PROSPECT's parameters; nullopt: none is given, or a file replaces the tissue. Throws InputError
+/// if one is missing.
+std::optional<leaf::PlateLeaf> plate_leaf(const Params& p);
 
 }  // namespace frond

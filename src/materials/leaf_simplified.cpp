@@ -72,7 +72,7 @@ leaf::TableLookup lookup_of(const leaf::Table& table, const WavelengthStrategy& 
 class LeafSimplified final : public Material {
  public:
   explicit LeafSimplified(const Params& p)
-      : leaf_(p),
+      : leaf_(p, LeafParams::Plates::table),
         varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         surface_texture_(p.given("oblateness") ? nullptr : leaf_.cuticle_aspect()),
         exponent_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
@@ -176,11 +176,11 @@ class LeafSimplified final : public Material {
   // The table of "tablefile".
   leaf::TableLookup read_lookup(const Preparation& preparation) const {
     const leaf::Table& table = *table_of_file_;
-    preparation.log.info(fmt::format(
-        "leaf table: {}, {} x {}{}", file_.path().string(), counted(table.wavelengths_nm.size(), "wavelength"),
-        counted(table.theta_deg.size(), "angle"), table.has_equal_sides() ? ", both sides the same" : ""));
+    preparation.log.info(
+        fmt::format("leaf table: {}, {} x {}{}", file_.name(), counted(table.wavelengths_nm.size(), "wavelength"),
+                    counted(table.theta_deg.size(), "angle"), table.has_equal_sides() ? ", both sides the same" : ""));
     return lookup_of(leaf::at_wavelengths(table, file_wavelengths(table.wavelengths_nm, preparation.wavelengths,
-                                                                  file_.where(), file_.path().string())),
+                                                                  file_.where(), file_.name())),
                      preparation.wavelengths);
   }
 

@@ -97,6 +97,7 @@ class LeafSolved final : public Material, public FluorescentMaterial {
   /// Makes the mode table or reads it from the cache; materials of one leaf share it.
   void make_table(const Preparation& preparation) {
     leaf_.check_wavelengths(preparation.wavelengths);
+    leaf_.log_difference(preparation.log);
     const leaf::ModeTableRequest request = request_for(preparation.wavelengths);
     const bool vary = preparation.wavelengths.fixed_nm().empty();
     const auto make = [&] {

@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/log.h"
 #include "core/params.h"
+#include "leaf/plates/plate_leaf.h"
 #include "leaf/table/table.h"
 
 namespace frond {
@@ -23,20 +25,22 @@ inline constexpr Param kTableLeaf{.name = "tableleaf",
                                   .kind = ParamKind::string,
                                   .doc = "Name of the leaf in a tablefile with measurements of several."};
 
-/// Parameter "string tablefile" of a leaf material: a file that replaces all parameters of the tissue. The cuticle
-/// still shapes the surface lobe.
+/// R and T of a leaf material that replace all parameters of the tissue: those of a file, "string tablefile", or of a
+/// leaf of PROSPECT (leaf/plates). The cuticle still shapes the surface lobe.
 class TableFileParam {
  public:
-  /// `also`: the material's own parameters that have no effect if a file is given.
+  /// `also`: the material's own parameters that have no effect if R and T are given.
   TableFileParam(const Params& p, std::span<const std::string_view> also);
 
-  /// Whether the scene gives a file.
-  bool is_given() const { return !path_.empty(); }
+  /// Whether the scene gives R and T; PROSPECT's after `read`.
+  bool is_given() const { return plates_ || !path_.empty(); }
   const std::filesystem::path& path() const { return path_; }
-  /// Where the scene names the file.
+  /// Returns the file, or what else has R and T, for messages.
+  std::string name() const { return plates_ ? "PROSPECT" : path_.string(); }
+  /// Where the scene gives R and T.
   const Location& where() const { return where_; }
-  /// Reads a leaf table or measured spectra; nullptr if no file is given. `surface` is the surface's share of measured
-  /// light (leaf/fit/measured_table.h). Throws InputError.
+  /// Reads a leaf table or measured spectra, or computes PROSPECT's; nullptr if none is given. `surface` is the
+  /// surface's share of measured light (leaf/fit/measured_table.h). Throws InputError.
   std::shared_ptr<const leaf::Table> read(const Params& p, double surface);
   /// Everything that the table read depends on, for the key of data that materials share.
   const std::string& key() const { return key_; }
@@ -47,6 +51,8 @@ class TableFileParam {
   void note_unused(const Params& p, std::string_view name);
 
   std::filesystem::path path_;  ///< empty: no file is given
+  std::optional<leaf::PlateLeaf> plates_;
+  std::span<const std::string_view> also_;
   Location where_;
   std::vector<std::pair<std::string_view, Location>> unused_;  ///< parameters without effect
   std::string changes_;                                        ///< warning of `read`

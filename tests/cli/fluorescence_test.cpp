@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "report/chart.h"
-#include "tests/support/command_test.h"
 #include "tests/cli/table.h"
+#include "tests/support/command_test.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -42,7 +42,7 @@ TEST(LeafConstants, ChlorophyllAbsorbsLeastOfTheVisibleAt550To555) {
 TEST(LeafConstants, OfProspectAreLinearBetweenNodes) {
   EXPECT_DOUBLE_EQ(prospect_constants_at(400).carotenoids, 16734);
   EXPECT_DOUBLE_EQ(prospect_constants_at(380).carotenoids, 16734);
-  EXPECT_NEAR(prospect_constants_at(402.5).anthocyanins, (6667.5 + 5669.9) / 2, 1e-9);
+  EXPECT_NEAR(prospect_constants_at(402.5).anthocyanins, (6667.47 + 5669.94) / 2, 1e-9);
   EXPECT_DOUBLE_EQ(prospect_constants_at(1000).dry_matter, 0);
   for (double nm = 360; nm <= 2500; nm += 1) {
     const ProspectConstants c = prospect_constants_at(nm);

@@ -317,6 +317,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   }
   std::set<std::string_view> expected{"absorption", "sieve", "fluorescingpigments"};
   for (const leaf::LeafNumber& n : leaf::leaf_parameters()) expected.insert(n.name);
+  for (const leaf::PlateNumber& n : leaf::plate_numbers()) expected.insert(n.name);
   expected.erase("cuticleaspect");
   EXPECT_EQ(named, expected);
   for (const char* name : {"anthocyanins", "brownpigments", "drymatter", "spongyshare", "cuticlerefractivity"})

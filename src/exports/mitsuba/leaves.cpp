@@ -6,6 +6,7 @@
 #include "exports/mitsuba/materials.h"
 #include "exports/mitsuba/textures.h"
 #include "instruments/beam.h"
+#include "leaf/plates/plate_leaf.h"
 #include "leaf/tissue/leaf_numbers.h"
 
 namespace frond::mitsuba {
@@ -52,6 +53,7 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
     if (contains(kWords, name)) xml.text(name, p.string(name));
     if (name == "sieve") xml.flag(name, p.boolean(name));
     if (name == "tolerance") xml.number(name, p.real(name));
+    if (leaf::find_plate_number(name)) xml.number(name, p.real(name));
     const leaf::LeafNumber* number = leaf::find_leaf_number(name);
     if (!number) continue;
     FloatValue value;

@@ -41,7 +41,8 @@ Specimen specimen_of(const JobRun& run, const std::string& text) {
   Session& session = run.session();
   const std::filesystem::path& cache = run.context.options().cache;
   const OneWavelength light(kEmission_nm.min);  // instruments have no film; fluorescence has wavelengths of its own
-  Specimen specimen{text, prepared_material(text, session.registry(), light, session.pool(), run.log(), cache), nullptr};
+  Specimen specimen{text, prepared_material(text, session.registry(), light, session.pool(), run.log(), cache),
+                    nullptr};
   const auto* fluorescent = dynamic_cast<const FluorescentMaterial*>(specimen.material.get());
   if (!fluorescent)
     fail({}, "{} has no fluorescence; {} have, with a quantum yield: NAME,fluorescence=0.01", text,

@@ -29,7 +29,8 @@ struct AreaContent {
   std::string_view name;  ///< in reports; empty: none
   AreaUnit unit;          ///< that the literature uses
   std::string_view prospect_symbol;
-  double kg_per_m3 = 1;  ///< mass in the mesophyll of one unit of the number
+  bool is_in_all = false;  ///< leaves without it are not described by PROSPECT's parameters
+  double kg_per_m3 = 1;    ///< mass in the mesophyll of one unit of the number
 };
 
 }  // namespace frond::leaf

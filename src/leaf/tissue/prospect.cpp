@@ -12,8 +12,11 @@
 namespace frond::leaf {
 namespace {
 
-constexpr WavelengthGrid kGrid{400, 5, 421};
-using Row = std::array<double, 7>;  ///< columns of the file
+/// Step of the walk's constants in nodes of the file: leaf tables have steps of 2.5 nm, absorption has 5 nm.
+constexpr size_t kStep = 5;
+constexpr WavelengthGrid kCoarse{400, 5, 421};
+
+using Row = std::array<double, 8>;  ///< columns of the file
 
 Row row_of(std::string_view line) {
   Row row{};
@@ -26,17 +29,24 @@ Row row_of(std::string_view line) {
   return row;
 }
 
-std::vector<ProspectConstants> read() {
-  std::vector<ProspectConstants> nodes;
+std::vector<ProspectNode> read() {
+  std::vector<ProspectNode> nodes;
   for (size_t begin = 0; begin < prospect_csv.size();) {
     const size_t end = std::min(prospect_csv.find('\n', begin), prospect_csv.size());
     const std::string_view line = prospect_csv.substr(begin, end - begin);
     begin = end + 1;
     if (line.empty() || line[0] < '0' || line[0] > '9') continue;  // a comment or the names
-    const auto [nm, chlorophyll, carotenoids, anthocyanins, water, dry_matter, brown] = row_of(line);
-    nodes.push_back({chlorophyll, carotenoids, anthocyanins, water, dry_matter, brown});
+    const auto [nm, chlorophyll, carotenoids, anthocyanins, water, dry_matter, brown, index] = row_of(line);
+    nodes.push_back({nm, {chlorophyll, carotenoids, anthocyanins, water, dry_matter, brown}, index});
   }
-  assert(nodes.size() == kGrid.size());
+  assert(nodes.size() == kCoarse.size() * kStep - kStep + 1);
+  return nodes;
+}
+
+/// Every kStep-th node, without the plateau of dry matter.
+std::vector<ProspectConstants> coarse_constants() {
+  std::vector<ProspectConstants> nodes;
+  for (size_t i = 0; i < prospect_nodes().size(); i += kStep) nodes.push_back(prospect_nodes()[i].specific);
   const double plateau = std::ranges::min(nodes, {}, &ProspectConstants::dry_matter).dry_matter;
   for (ProspectConstants& c : nodes) c.dry_matter -= plateau;
   return nodes;
@@ -44,9 +54,14 @@ std::vector<ProspectConstants> read() {
 
 }  // namespace
 
+std::span<const ProspectNode> prospect_nodes() {
+  static const std::vector<ProspectNode> nodes = read();
+  return nodes;
+}
+
 ProspectConstants prospect_constants_at(double lambda_nm) {
-  static const std::vector<ProspectConstants> nodes = read();
-  const auto [i, t] = kGrid.cell(lambda_nm);
+  static const std::vector<ProspectConstants> nodes = coarse_constants();
+  const auto [i, t] = kCoarse.cell(lambda_nm);
   const ProspectConstants &a = nodes[i], &b = nodes[i + 1];
   const auto between = [t = t](double x, double y) { return (1 - t) * x + t * y; };
   return {between(a.chlorophyll, b.chlorophyll),   between(a.carotenoids, b.carotenoids),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace frond::leaf {
@@ -18,7 +19,18 @@ struct ProspectConstants {
   double brown_pigments;  ///< per unit of PROSPECT's content, which has no dimension
 };
 
-/// Returns the constants: linear between the nodes of the file, every 5 nm from 400 to 2500 nm. Below, the first value.
+/// PROSPECT-D at one wavelength, as published.
+struct ProspectNode {
+  double nm;
+  ProspectConstants specific;  ///< with all dry matter, its plateau included
+  double refractive_index;     ///< of a plate
+};
+
+/// Returns the rows of the file, one for each nm from 400 to 2500.
+std::span<const ProspectNode> prospect_nodes();
+
+/// Returns the constants for the walk's mesophyll: linear between every fifth node, from 400 to 2500 nm. Below, the
+/// first value.
 ProspectConstants prospect_constants_at(double lambda_nm);
 
 /// Hash of the file, for the keys of caches.
