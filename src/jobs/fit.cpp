@@ -252,6 +252,7 @@ void warn_of_changes(const JobRun& run, const leaf::MeasuredSpectra& measured, c
   if (measured.derived)
     run.log().info(fmt::format("{}{} = 1 - {} - A: it follows from the column of absorptances", of, measured.derived,
                                measured.derived == 'T' ? 'R' : 'T'));
+  if (!measured.layout.empty()) run.log().info(fmt::format("{}{}", of, measured.layout));
   if (!measured.unused.empty())
     run.log().info(fmt::format("{}columns that are not used: {}", of, fmt::join(measured.unused, ", ")));
   if (!measured.in_percent.empty())
@@ -327,6 +328,7 @@ void read_leaves(const JobRun& run, const std::string& file, bool keeps_errors, 
     changes.left_out += one.spectra.left_out;
     changes.derived = std::max(changes.derived, one.spectra.derived);
     changes.unused = one.spectra.unused;
+    changes.layout = one.spectra.layout;
     LeafFitReport& leaf = leaves.emplace_back(LeafFitReport{name, one.name.empty() ? stem : one.name, one.error});
     leaf.measurements = one.spectra.measurements.size();
     leaf.request.measurements = std::move(one.spectra.measurements);

@@ -8,6 +8,7 @@
 
 #include "core/messages/excerpt.h"
 #include "spectra/named.h"
+#include "spectra/spectra_text.h"
 #include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
 #include "system/text_table.h"
@@ -59,10 +60,18 @@ std::string listed(const TextTable& table, const std::vector<size_t>& columns) {
   return text + (columns.size() > kMost ? ", ..." : "");
 }
 
+/// Brings the points in ascending order; of several at one wavelength the first remains.
+void sort(std::vector<SpectrumPoint>& points) {
+  std::ranges::stable_sort(points, {}, &SpectrumPoint::lambda_nm);
+  const auto rest = std::ranges::unique(points, {}, &SpectrumPoint::lambda_nm);
+  points.erase(rest.begin(), rest.end());
+}
+
 /// A table whose first line names its columns.
 class NamedColumns {
  public:
-  explicit NamedColumns(TextTable& table) : table_(table) {
+  /// `of_instrument`: the file of an instrument or a library, whose R or T is meant, in percent where its name says so.
+  NamedColumns(TextTable& table, bool of_instrument) : table_(table), of_instrument_(of_instrument) {
     const auto& names = table.names();
     wavelength_ = wavelength_column(names).value_or(0);
     for (size_t i = 0; i < names.size(); ++i)
@@ -80,19 +89,29 @@ class NamedColumns {
       table_.check_fields();
       points.push_back({number_of(table_, wavelength_), 0, table_.where(wavelength_)});
       for (size_t c = 0; c < values_.size(); ++c)
-        if (values_.size() == 1 || is_wanted(c, wanted)) values[c].push_back(number_of(table_, values_[c]));
+        if (values_.size() == 1 || is_wanted(c, wanted) || (wanted.empty() && is_share(c)))
+          values[c].push_back(number_of(table_, values_[c]));
     }
+    for (SpectrumPoint& p : points) p.lambda_nm *= is_in_micrometres(table_.names()[wavelength_].text) ? 1000 : 1;
     if (points.empty()) fail(table_.names_where(), "the file holds no spectrum: no line of numbers follows this one");
     // pandas writes wavelengths that are an index without a name.
     if (table_.names()[wavelength_].text.empty() && points[0].lambda_nm == 1)
       fail(points[0].where, "there is no column of wavelengths: this one has no name and counts rows");
     // Names are quoted now that the file is known to be a table of numbers.
     const size_t chosen = choose(wanted);
-    for (size_t i = 0; i < points.size(); ++i) points[i].value = values[chosen][i];
+    const double scale =
+        of_instrument_ && table_.names()[values_[chosen]].text.find('%') != std::string_view::npos ? 0.01 : 1;
+    for (size_t i = 0; i < points.size(); ++i) points[i].value = scale * values[chosen][i];
+    // Detectors of an instrument overlap, and libraries descend.
+    if (of_instrument_) sort(points);
     return points;
   }
 
  private:
+  bool is_share(size_t c) const {
+    const std::string name = name_without_unit(table_.names()[values_[c]].text);
+    return of_instrument_ && (name == "r" || name == "t" || name.starts_with("reflect") || name.starts_with("tgt."));
+  }
   bool is_wanted(size_t c, std::string_view wanted) const {
     return lower_case(table_.names()[values_[c]].text) == lower_case(wanted);
   }
@@ -104,6 +123,9 @@ class NamedColumns {
       return found;
     };
     if (wanted.empty() && values_.size() == 1) return 0;
+    if (wanted.empty())
+      for (size_t c = 0; c < values_.size(); ++c)
+        if (is_share(c)) return c;
     const auto found = wanted.empty() ? std::vector<size_t>{} : is(wanted);
     if (found.size() == 1) return found[0];
     if (found.size() > 1) fail(table_.names_where(), "there are {} columns \"{}\"", found.size(), wanted);
@@ -115,6 +137,7 @@ class NamedColumns {
   }
 
   TextTable& table_;
+  bool of_instrument_;
   size_t wavelength_ = 0;
   std::vector<size_t> values_;  ///< columns
 };
@@ -122,12 +145,14 @@ class NamedColumns {
 }  // namespace
 
 std::vector<SpectrumPoint> parse_spd_points(std::string_view text, const std::string& name, std::string_view column) {
-  TextTable table(text, name, TableComments::anywhere);
+  const SpectraText recognised = spectra_text(text);
+  TextTable table(recognised.text, name, TableComments::anywhere);
   if (table.columns() == 0)
     fail(table.names_where(), "the file holds no spectrum: wavelength (nm) and value in turn are expected");
   if (!column.empty() && !table.has_names())
     fail(table.names_where(), "there is no line that names the columns, so that \"{}\" could be one of them", column);
-  std::vector<SpectrumPoint> points = table.has_names() ? NamedColumns(table).read(column) : read_pairs(table);
+  std::vector<SpectrumPoint> points =
+      table.has_names() ? NamedColumns(table, !recognised.layout.empty()).read(column) : read_pairs(table);
   check_points(points);
   return points;
 }

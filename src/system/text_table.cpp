@@ -95,7 +95,7 @@ void check_text(std::string_view text, const Location& where) {
 }  // namespace
 
 std::string name_without_unit(std::string_view name) {
-  return lower_case(trimmed(name.substr(0, std::min(name.find_first_of("([/"), name.size()))));
+  return lower_case(trimmed(name.substr(0, std::min(name.find_first_of("([/%"), name.size()))));
 }
 
 TextTable::TextTable(std::string_view text, const std::string& name, TableComments comments)
@@ -191,12 +191,33 @@ size_t TextTable::rows_left() const {
   return rows;
 }
 
+void TextTable::unpivot(std::vector<size_t> columns, std::vector<std::string> headings, std::optional<size_t> label) {
+  unpivoted_ = Unpivoted{std::move(columns), std::move(headings), label};
+  unpivoted_->at = unpivoted_->columns.size();
+}
+
 bool TextTable::next() {
+  if (!unpivoted_) return next_row();
+  Unpivoted& u = *unpivoted_;
+  if (u.at == u.columns.size()) {
+    if (!next_row()) return false;
+    if (fields_.size() != names_.size())
+      fail(where(), "{} fields, but the file has {} columns", fields_.size(), names_.size());
+    u.fields = fields_, u.at = 0, u.number = std::to_string(++u.row);
+    columns_ = 3;
+  }
+  const TableField& value = u.fields[u.columns[u.at]];
+  fields_ = {u.label ? u.fields[*u.label] : TableField{u.number, 1}, TableField{u.headings[u.at], value.column}, value};
+  ++u.at;
+  return true;
+}
+
+bool TextTable::next_row() {
   std::string_view line;
   if (!next_line(line)) return false;
   split(line);
   // Spreadsheets end lines with separators.
-  while (has_names() && fields_.size() > columns_ && fields_.back().text.empty()) fields_.pop_back();
+  while (has_names() && fields_.size() > names_.size() && fields_.back().text.empty()) fields_.pop_back();
   if (row_ && number(fields_[0].text) != double(++*row_))
     fail(where(), "{} fields, but the file has {} columns", fields_.size(), columns_ - 1);
   return true;

@@ -44,6 +44,10 @@ class TextTable {
   /// Number of rows after the current one.
   size_t rows_left() const;
 
+  /// Reads each row as several from now on, one for each of the `columns`: a label, the column's heading and its field.
+  /// The label is that of column `label`, or else the number of the row.
+  void unpivot(std::vector<size_t> columns, std::vector<std::string> headings, std::optional<size_t> label);
+
   /// Reads the next row. Returns false at the end.
   bool next();
   /// Fields of the row. There may be more or fewer than columns().
@@ -61,6 +65,17 @@ class TextTable {
   Location names_where(size_t name) const { return {file_, first_line_, names_[name].column}; }
 
  private:
+  /// State of `unpivot`.
+  struct Unpivoted {
+    std::vector<size_t> columns;
+    std::vector<std::string> headings;
+    std::optional<size_t> label;
+    size_t at = 0, row = 0;  ///< next of the columns; number of the row
+    std::vector<TableField> fields = {};
+    std::string number = {};
+  };
+
+  bool next_row();
   bool next_line(std::string_view& line);
   void split(std::string_view line);
   void begin();
@@ -73,6 +88,7 @@ class TextTable {
   int line_ = 0, first_line_ = 1;
   size_t columns_ = 0;
   std::vector<TableField> names_, fields_;
+  std::optional<Unpivoted> unpivoted_;
   std::optional<size_t> row_;  ///< number of the row, if the first column has it and the line of names does not name it
 };
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "leaf/tissue/constants.h"
+#include "spectra/spectra_text.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
@@ -29,7 +30,7 @@ Column column_of(std::string_view name) {
     return std::ranges::find(names, word) != names.end();
   };
   if (names_wavelengths(name)) return kWavelength;
-  if (is({"r", "reflectance", "refl", "r_mean", "reflectance_mean"})) return kR;
+  if (is({"r", "reflectance", "refl", "reflect.", "tgt.", "r_mean", "reflectance_mean"})) return kR;
   if (is({"t", "transmittance", "trans", "tran", "t_mean", "transmittance_mean"})) return kT;
   if (is({"a", "absorptance", "a_mean", "absorptance_mean"})) return kA;
   if (is({"theta_deg", "theta", "angle", "angle_deg", "incidence_deg"})) return kTheta;
@@ -42,8 +43,9 @@ class Reader {
  public:
   /// `all`: reads every leaf, and collects the errors of each.
   Reader(std::string_view text, const std::string& name, const SpectraMeasurement& how, bool all)
-      : how_(how), all_(all), table_(text, name) {
+      : how_(how), all_(all), text_(spectra_text(text)), table_(text_.text, name) {
     if (table_.columns() == 0) return;
+    layout_ = text_.layout;
     begin();
     first_row_ = table_.names_where();
     while (table_.next()) row();
@@ -97,8 +99,10 @@ class Reader {
              "two columns have the same name: wavelength, R, T, A, theta_deg, side and leaf occur at most once");
     // pandas writes wavelengths that are an index without a name.
     if (!has(kWavelength) && table_.names()[0].text.empty()) columns_[0] = kWavelength;
+    if (!has(kWavelength)) begin_rows();
     if (!has(kWavelength))
       fail(table_.names_where(), "there is no column of wavelengths: \"wavelength_nm\", \"nm\" or \"wavelength\"");
+    if (!has(kR) && !has(kT) && !has(kA)) begin_columns();
     if (!has(kR) && !has(kT))
       fail(table_.names_where(), "there is neither a column of reflectances, \"R\", nor one of transmittances, \"T\"");
     // Absorptance follows from R and T; where one of them is missing, the other one follows from it.
@@ -110,6 +114,47 @@ class Reader {
         units_[columns_[i]] = Unit::percent;
       if (columns_[i] == kOther && !name.empty()) unused_.emplace_back(name);
     }
+  }
+
+  void add_layout(const std::string& text) { layout_ += (layout_.empty() ? "" : "; ") + text; }
+
+  /// A spectrum in each row, in columns that are named by wavelengths.
+  void begin_rows() {
+    WavelengthNames named = wavelength_names(table_.names());
+    if (named.columns.empty()) return;
+    std::optional<size_t> label;
+    for (size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i] == kLeaf && !label) label = i;
+      const bool is_value = std::ranges::find(named.columns, i) != named.columns.end();
+      if (!is_value && label != i && !table_.names()[i].text.empty()) unused_.emplace_back(table_.names()[i].text);
+    }
+    add_layout(fmt::format("a spectrum in each row, {} wavelengths, taken as R", named.columns.size()));
+    table_.unpivot(std::move(named.columns), std::move(named.nm), label);
+    columns_ = {kLeaf, kWavelength, kR};
+  }
+
+  /// A spectrum in each column, under the name of its leaf. Columns of what is no share of the light are refused.
+  void begin_columns() {
+    std::vector<size_t> values;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i] != kOther || table_.names()[i].text.empty()) continue;
+      const std::string name = lower_case(table_.names()[i].text);
+      for (const std::string_view other :
+           {"radiance", "irradiance", "counts", "reference", "target", "absorbance", "emissivity", "transm"})
+        if (name.find(other) != name.npos) return;
+      values.push_back(i), names.emplace_back(table_.names()[i].text);
+    }
+    if (values.empty() || has(kTheta) || has(kSide) || has(kLeaf)) return;
+    if (values.size() == 1) {
+      columns_[values[0]] = kR;
+      add_layout(fmt::format("\"{}\" is taken as R", names[0]));
+      return;
+    }
+    add_layout(fmt::format("a spectrum in each of {} columns, taken as R", values.size()));
+    const auto wavelength = static_cast<size_t>(std::ranges::find(columns_, kWavelength) - columns_.begin());
+    table_.unpivot(std::move(values), std::move(names), wavelength);
+    columns_ = {kWavelength, kLeaf, kR};
   }
 
   bool has(Column column) const { return std::ranges::find(columns_, column) != columns_.end(); }
@@ -141,6 +186,7 @@ class Reader {
     if (is_new) {
       entries_.push_back({place->first});
       entries_.back().spectra.unused = unused_;
+      entries_.back().spectra.layout = layout_;
     }
     return &entries_[place->second];
   }
@@ -328,10 +374,12 @@ class Reader {
 
   const SpectraMeasurement& how_;
   bool all_;
+  SpectraText text_;
   TextTable table_;
   Location first_row_;
   std::vector<Column> columns_;
   std::vector<std::string> unused_;  ///< names of columns
+  std::string layout_;               ///< MeasuredSpectra::layout
   std::set<std::string> leaves_;
   std::vector<Entry> entries_;
   std::map<std::string, size_t> places_;  ///< of entries, by name

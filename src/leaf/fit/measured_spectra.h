@@ -25,14 +25,17 @@ struct MeasuredSpectra {
   std::string in_percent = {};  ///< "R", "R and T", ...: what is in percent in the file; `measurements` are fractions
   char derived = 0;             ///< 'T' or 'R': follows from the other one and the absorptance; 0: none
   std::vector<std::string> unused = {};  ///< names of columns that are not read
+  std::string layout = {};               ///< what was recognised and assumed, for the log; empty: a plain table
 };
 
 /// Reads text as instruments export it, in any layout that TextTable reads. Names of columns, in any case and with or
 /// without a unit behind them: wavelength (nm, lambda, wvl), R (reflectance, refl), T (transmittance, trans), A
 /// (absorptance), theta_deg (angle), side (adaxial or upper, abaxial or lower), leaf (material, sample); others are
 /// listed as unused. If R or T has no column, it is 1 less the other one and A. Without names: wavelength, R and, if
-/// there are three columns, T. Wavelengths below 100 are in micrometres. A column is in percent if its name says so or,
-/// where no name has a unit, if most of its values are above 1.5. Throws InputError with `name`, line and column.
+/// there are three columns, T. Files of instruments and libraries that spectra_text recognises are read too; so are
+/// tables with a spectrum in each row, in columns named by wavelengths, or in each column: all are R. Wavelengths below
+/// 100 are in micrometres. A column is in percent if its name says so or, where no name has a unit, if most of its
+/// values are above 1.5. Throws InputError with `name`, line and column.
 MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how);
 
 /// One leaf of a file with several.

@@ -1,0 +1,127 @@
+#include "spectra/spectra_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "spectra/wavelength_column.h"
+#include "system/lower_case.h"
+
+namespace frond {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == text.npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+/// Lines without their ends.
+std::vector<std::string_view> lines_of(std::string_view text) {
+  const char end = text.find('\n') == text.npos ? '\r' : '\n';
+  std::vector<std::string_view> lines;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t at = std::min(text.find(end, begin), text.size());
+    lines.push_back(trimmed(text.substr(begin, at - begin)));
+    begin = at + 1;
+  }
+  return lines;
+}
+
+bool begins_with_a_number(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of("+-."), line.size()));
+  return !line.empty() && line[0] >= '0' && line[0] <= '9';
+}
+
+/// What follows "KEY:" in one of the lines, in lower case.
+std::optional<std::string> value_of(std::span<const std::string_view> lines, std::string_view key) {
+  for (const std::string_view line : lines)
+    if (line.size() > key.size() && lower_case(line.substr(0, key.size())) == key && line[key.size()] == ':')
+      return lower_case(trimmed(line.substr(key.size() + 1)));
+  return {};
+}
+
+/// The lines from `first` on, after one that names the columns, at the numbers that they have.
+std::string table_from(const std::vector<std::string_view>& lines, size_t first, const std::string& names) {
+  std::string text(std::max<size_t>(first, 1) - 1, '\n');
+  text += names + '\n';
+  for (size_t i = first; i < lines.size(); ++i) text.append(lines[i]) += '\n';
+  return text;
+}
+
+size_t first_numbers(const std::vector<std::string_view>& lines) {
+  return size_t(std::ranges::find_if(lines, begins_with_a_number) - lines.begin());
+}
+
+std::optional<SpectraText> spectra_vista(const std::vector<std::string_view>& lines) {
+  if (!lines[0].starts_with("/*** Spectra Vista")) return {};
+  const auto data = std::ranges::find_if(lines, [](std::string_view line) { return line.starts_with("data="); });
+  if (data == lines.end()) return {};
+  return SpectraText{table_from(lines, size_t(data - lines.begin()) + 1, "wavelength reference target R(%)"),
+                     "Spectra Vista (.sig)"};
+}
+
+std::optional<SpectraText> library(const std::vector<std::string_view>& lines) {
+  const size_t first = first_numbers(lines);
+  const auto head = std::span(lines).first(first);
+  const auto x = value_of(head, "x units"), y = value_of(head, "y units");
+  if (!x || !y || first == lines.size() || first == 0) return {};
+  const std::string unit = x->find("micro") != x->npos || x->find("um") != x->npos ? "um" : "nm";
+  // Emissivity and others keep their names, and are refused by name.
+  std::string share = y->find("reflectance") != y->npos ? "R" : y->find("transmittance") != y->npos ? "T" : *y;
+  if (share.size() == 1 && y->find("percent") != y->npos) share += "(%)";
+  const bool has_tabs = lines[first].find('\t') != std::string_view::npos;
+  return SpectraText{
+      table_from(lines, first, fmt::format("wavelength({}){}\"{}\"", unit, has_tabs ? '\t' : ' ', share)),
+      "ECOSTRESS or ASTER library"};
+}
+
+std::optional<SpectraText> envi_plot(const std::vector<std::string_view>& lines) {
+  if (!lines[0].starts_with("ENVI ASCII Plot")) return {};
+  const size_t first = first_numbers(lines);
+  if (first == lines.size()) return {};
+  std::string names;
+  for (const std::string_view line : std::span(lines).first(first)) {
+    const size_t colon = line.find(':');
+    if (!line.starts_with("Column ") || colon == line.npos) continue;
+    std::string name(trimmed(line.substr(colon + 1, line.find("~~") - colon - 1)));
+    std::erase(name, '"');
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : " ", name);
+  }
+  if (names.empty()) return {};
+  return SpectraText{table_from(lines, first, names), "ENVI ASCII plot"};
+}
+
+/// A table whose line of names follows lines that are no comments.
+std::optional<SpectraText> after_a_head(const std::vector<std::string_view>& lines) {
+  constexpr size_t kLongestHead = 500;
+  bool has_head = false;
+  for (size_t i = 0; i + 1 < std::min(lines.size(), kLongestHead); ++i) {
+    std::string_view name = lines[i].substr(0, lines[i].find_first_of(",;\t "));
+    if (name.size() > 1 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    if (names_wavelengths(name) && name.size() < lines[i].size() && begins_with_a_number(lines[i + 1])) {
+      if (!has_head) return {};
+      const bool is_sed = value_of(std::span(lines).first(i), "data").has_value() || lines[i - 1] == "Data:";
+      return SpectraText{table_from(lines, i + 1, std::string(lines[i])),
+                         is_sed ? "Spectral Evolution (.sed)" : "a table after other lines"};
+    }
+    has_head = has_head || (!lines[i].empty() && lines[i][0] != '#');
+  }
+  return {};
+}
+
+}  // namespace
+
+SpectraText spectra_text(std::string_view text) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  if (!lines.empty())
+    for (auto* const layout : {&spectra_vista, &envi_plot, &library, &after_a_head})
+      if (auto found = layout(lines)) return std::move(*found);
+  return {std::string(text), {}};
+}
+
+}  // namespace frond
