@@ -191,7 +191,8 @@ class Abm final : public Material, public FluorescentMaterial {
     return arena.make<AbmBsdf>(lanes, absorption_);
   }
 
-  std::shared_ptr<const Fluorescence> fluorescence(const Preparation&) const override {
+  std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const override {
+    if (auto given = matrix_fluorescence(leaf_, preparation.log)) return given;
     leaf_.refuse_varying_fluorescence();
     return std::make_shared<const WalkedFluorescence>(leaf_, absorption_);
   }

@@ -1,6 +1,8 @@
 #include "materials/leaf_fluorescence.h"
 
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "leaf/tissue/absorption.h"
 
@@ -58,6 +60,41 @@ leaf::FluorescenceEnd WalkedFluorescence::transferred(const Vec3d& wi, double em
                                                       RandomStream& rng) const {
   const leaf::Tissue excited = model().at(excitation_nm), emitting = model().at(emission_nm);
   return leaf::walk_fluorescence({excited, emitting}, wi, absorption_, rng);
+}
+
+std::string MatrixFluorescence::emission_shape() const {
+  return matrices_ ? "matrices of " + matrices_->name() : "none";
+}
+
+double MatrixFluorescence::f(const Vec3& wo, const Vec3& wi, double emission_nm, double excitation_nm,
+                             RandomStream&) const {
+  if (!matrices_ || wo.z == 0 || wi.z == 0) return 0;
+  const leaf::EmissionMatrices::Sides m = matrices_->at(emission_nm, excitation_nm, wi.z < 0);
+  return ((wo.z > 0) == (wi.z > 0) ? m.lit : m.opposite) * std::numbers::inv_pi;
+}
+
+FluorescencePhotons MatrixFluorescence::photons(const Vec3& wi, double emission_nm, double excitation_nm,
+                                                RandomStream&) const {
+  if (!matrices_ || wi.z == 0) return {};
+  const leaf::EmissionMatrices::Sides m = matrices_->at(emission_nm, excitation_nm, wi.z < 0);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return {kUnknown, kUnknown, kUnknown, m.lit, m.opposite};
+}
+
+std::shared_ptr<const Fluorescence> matrix_fluorescence(const LeafParams& leaf, const Log& log) {
+  if (!leaf.matrices()) return nullptr;
+  if (leaf.tissue().fluorescence > 0)
+    log.warn(leaf.where(), "\"fluorescence\" has no effect with \"fluorescencematrices\"");
+  return std::make_shared<const MatrixFluorescence>(leaf.matrices());
+}
+
+std::shared_ptr<const Fluorescence> only_matrix_fluorescence(const LeafParams& leaf, const Log& log) {
+  if (auto given = matrix_fluorescence(leaf, log)) return given;
+  if (leaf.tissue().fluorescence > 0)
+    fail(leaf.where(),
+         "fluorescence follows from tissue, which only abm and leaf_solved without \"tablefile\" walk through: use one "
+         "of them, or give \"fluorescencematrices\"");
+  return std::make_shared<const MatrixFluorescence>(nullptr);
 }
 
 }  // namespace frond

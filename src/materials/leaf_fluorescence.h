@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/fluorescence.h"
+#include "core/log.h"
 #include "leaf/fluorescence/fluorescence_table.h"
 #include "materials/leaf_params.h"
 
@@ -78,5 +79,32 @@ class SolvedFluorescence final : public LeafFluorescence {
  private:
   std::shared_ptr<const leaf::FluorescenceTable> table_;
 };
+
+/// Fluorescence by matrices from a file, Lambertian on each side. What happens inside is unknown: the photons that are
+/// absorbed, emitted inside and reabsorbed are NaN.
+class MatrixFluorescence final : public Fluorescence {
+ public:
+  /// nullptr: black.
+  explicit MatrixFluorescence(std::shared_ptr<const leaf::EmissionMatrices> matrices)
+      : matrices_(std::move(matrices)) {}
+
+  std::string emission_shape() const override;
+  bool is_black() const override { return !matrices_; }
+  bool is_noisy() const override { return false; }
+  double f(const Vec3& wo, const Vec3& wi, double emission_nm, double excitation_nm, RandomStream& rng) const override;
+  FluorescencePhotons photons(const Vec3& wi, double emission_nm, double excitation_nm,
+                              RandomStream& rng) const override;
+  /// Returns the photons that leave both sides, in proportion to which light is absorbed.
+  double excitation(double excitation_nm) const override { return matrices_ ? matrices_->emitted(excitation_nm) : 0; }
+
+ private:
+  std::shared_ptr<const leaf::EmissionMatrices> matrices_;
+};
+
+/// Returns the fluorescence of the leaf's matrices; nullptr if it has none. Warns of a yield, which has no effect.
+std::shared_ptr<const Fluorescence> matrix_fluorescence(const LeafParams& leaf, const Log& log);
+
+/// The same for a leaf without a model of fluorescence: black if it has no matrices. Throws InputError for a yield.
+std::shared_ptr<const Fluorescence> only_matrix_fluorescence(const LeafParams& leaf, const Log& log);
 
 }  // namespace frond

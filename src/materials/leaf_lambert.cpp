@@ -6,6 +6,7 @@
 #include "leaf/table/depth_table.h"
 #include "leaf/table/table_axes.h"
 #include "leaf/table/table_cache.h"
+#include "materials/leaf_fluorescence.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/two_sided_lambertian.h"
@@ -121,7 +122,7 @@ class TwoSidedSpectra {
 };
 
 /// A Lambertian leaf, as in models of plant canopies: a reflectance and a transmittance for each side and wavelength.
-class LeafLambert final : public Material {
+class LeafLambert final : public Material, public FluorescentMaterial {
  public:
   explicit LeafLambert(const Params& p)
       : leaf_(p, LeafParams::Plates::table),
@@ -161,6 +162,10 @@ class LeafLambert final : public Material {
   }
 
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
+
+  std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const override {
+    return only_matrix_fluorescence(leaf_, preparation.log);
+  }
 
  private:
   // Angles of the adaxial side, then of the abaxial side in reverse, so that they ascend; a unifacial leaf is

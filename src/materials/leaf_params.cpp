@@ -16,6 +16,7 @@ using leaf::TissueParams;
 namespace {
 
 constexpr std::string_view kAbsorption[] = {"baranoski", "prospect"};
+constexpr std::string_view kMatrixUnits[] = {"photons", "energy"};
 constexpr std::string_view kIncident[] = {"traced", "light", "reciprocal"};
 
 // clang-format off
@@ -39,6 +40,15 @@ constexpr Param kOthers[] = {
     {.name = "emission", .kind = ParamKind::string,
      .doc = "Spectrum file (.spd, .csv) of the fluorescence inside the tissue: wavelength in nm and density of photons, "
             "of any unit; by default two Gaussians (docs/fluorescence.md)."},
+    {.name = "fluorescencematrices", .kind = ParamKind::string,
+     .doc = "File with the leaf's excitation-emission matrices Mb and Mf (docs/file_formats.md): Lambertian emission, "
+            "whatever the angle of incidence. It replaces the fluorescence of the model and its yield."},
+    {.name = "fluorescenceunit", .kind = ParamKind::string, .default_value = kMatrixUnits[0],
+     .doc = "What these matrices hold, for each nm of emission. photons: photons per incident photon; energy: energy "
+            "per incident energy.", .choices = kMatrixUnits},
+    {.name = "fluorescencescale", .kind = ParamKind::real, .default_value = 1.0, .range = {0, 1e6},
+     .doc = "Factor of these matrices: the quantum yield if they hold for a yield of 1; 0.2 if the sum over steps of "
+            "5 nm is part of them."},
     {.name = "sieve", .kind = ParamKind::boolean,
      .doc = "Absorption with the sieve and detour effects (Baranoski and Eng 2007); by default the specimen's, which "
             "is false for soybean and maize."},
@@ -69,6 +79,18 @@ leaf::EmissionShape emission_of(const Params& p) {
   return {spectrum_name(file), read_spd_points(file, p.where("emission")), p.where("emission")};
 }
 
+std::shared_ptr<const leaf::EmissionMatrices> matrices_of(const Params& p) {
+  constexpr std::string_view kName = "fluorescencematrices";
+  if (!p.given(kName)) {
+    for (const char* name : {"fluorescenceunit", "fluorescencescale"})
+      if (p.given(name)) fail(p.where(name), "\"{}\" has no effect without \"{}\"", name, kName);
+    return nullptr;
+  }
+  const leaf::MatrixUnit unit{p.string("fluorescenceunit") == "energy", p.real("fluorescencescale")};
+  return std::make_shared<const leaf::EmissionMatrices>(
+      leaf::read_emission_matrices(p.file(kName), unit, p.where(kName)));
+}
+
 }  // namespace
 
 const std::vector<Param>& leaf_params() {
@@ -94,8 +116,10 @@ const std::vector<Param>& leaf_params() {
 }
 
 bool is_of_tissue(const Param& leaf_param) {
+  constexpr std::string_view kOfNone[] = {"specimen", "incident", "fluorescencematrices", "fluorescenceunit",
+                                          "fluorescencescale"};
   const LeafNumber* n = leaf::find_leaf_number(leaf_param.name);
-  return n ? n->action != leaf::LeafAction::surface : leaf_param.name != "specimen" && leaf_param.name != "incident";
+  return n ? n->action != leaf::LeafAction::surface : std::ranges::find(kOfNone, leaf_param.name) == std::end(kOfNone);
 }
 
 std::vector<Param> with_leaf_params(std::span<const Param> own) {
@@ -141,18 +165,19 @@ LeafParams::LeafParams(const Params& p, Plates plates)
       incident_(incident_of(p.string("incident"))),
       plates_(plate_leaf(p)),
       depth_(read(p, plates)),
-      emission_(emission_of(p)) {}
+      emission_(emission_of(p)),
+      matrices_(matrices_of(p)) {}
 
 /// Whether PROSPECT's parameters describe what the parameter does: all of R and T, and not the emission.
-static bool is_replaced_by_plates(std::string_view name) {
-  if (const LeafNumber* n = leaf::find_leaf_number(name)) return n->changes_shares();
-  return !leaf::find_plate_number(name) && name != kSpecimen.name && name != "incident" && name != "emission";
+static bool is_replaced_by_plates(const Param& of_leaf) {
+  if (const LeafNumber* n = leaf::find_leaf_number(of_leaf.name)) return n->changes_shares();
+  return is_of_tissue(of_leaf) && !leaf::find_plate_number(of_leaf.name) && of_leaf.name != "emission";
 }
 
 leaf::DepthMap LeafParams::read(const Params& p, Plates plates) {
   if (plates_) {
     for (const Param& of_leaf : leaf_params())
-      if (is_replaced_by_plates(of_leaf.name) && p.given(of_leaf.name))
+      if (is_replaced_by_plates(of_leaf) && p.given(of_leaf.name))
         fail(p.where(of_leaf.name),
              "\"{}\" has no effect beside PROSPECT's parameters, which are those of the whole leaf", of_leaf.name);
     if (plates == Plates::walk) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include "core/params.h"
 #include "core/wavelengths.h"
 #include "leaf/fluorescence/emission.h"
+#include "leaf/fluorescence/emission_matrices.h"
 #include "leaf/plates/plate_leaf.h"
 #include "leaf/table/depth_map.h"
 #include "leaf/tissue/specimens.h"
@@ -21,7 +23,7 @@ namespace frond {
 const std::vector<Param>& leaf_params();
 
 /// Whether the parameter is of the tissue, which a table of its reflectance and transmittance replaces. The surface's
-/// shape and the direction are not.
+/// shape, the direction and matrices of fluorescence are not.
 bool is_of_tissue(const Param& leaf_param);
 
 /// The leaf's parameters and then a material's own.
@@ -71,6 +73,10 @@ class LeafParams {
 
   /// Distribution of the wavelengths of fluorescence.
   const leaf::EmissionShape& emission() const { return emission_; }
+  /// Matrices that replace the fluorescence of the model; nullptr: none are given.
+  const std::shared_ptr<const leaf::EmissionMatrices>& matrices() const { return matrices_; }
+  /// Where the scene names the material.
+  const Location& where() const { return where_; }
 
   /// Throws InputError if a texture gives the aspect ratio of an inner wall: for materials whose tables hold for one
   /// tissue. The cuticle affects the surface alone.
@@ -107,6 +113,7 @@ class LeafParams {
   std::optional<leaf::PlateLeaf> plates_;  ///< PROSPECT's parameters
   leaf::DepthMap depth_;
   leaf::EmissionShape emission_;
+  std::shared_ptr<const leaf::EmissionMatrices> matrices_;
 };
 
 /// Returns the leaf of PROSPECT's parameters; nullopt: none is given, or a file replaces the tissue. Throws InputError

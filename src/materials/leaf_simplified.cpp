@@ -3,6 +3,7 @@
 #include "core/material.h"
 #include "core/messages/counted.h"
 #include "leaf/table/table_cache.h"
+#include "materials/leaf_fluorescence.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/three_lobe.h"
@@ -69,7 +70,7 @@ leaf::TableLookup lookup_of(const leaf::Table& table, const WavelengthStrategy& 
 
 // Material "leaf_simplified". The table comes from "tablefile", from a solution over optical depth if chemistry or
 // thickness varies over the leaf, or else from the cache or a solution for the leaf's own depth.
-class LeafSimplified final : public Material {
+class LeafSimplified final : public Material, public FluorescentMaterial {
  public:
   explicit LeafSimplified(const Params& p)
       : leaf_(p, LeafParams::Plates::table),
@@ -122,6 +123,10 @@ class LeafSimplified final : public Material {
   }
 
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
+
+  std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const override {
+    return only_matrix_fluorescence(leaf_, preparation.log);
+  }
 
  private:
   const leaf::TableSelection* selection(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const {

@@ -79,7 +79,8 @@ class LeafSolved final : public Material, public FluorescentMaterial {
   bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
 
   std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const override {
-    if (file_.is_given()) fail(file_.where(), "a mode table has no fluorescence: give the leaf's parameters instead");
+    if (file_.is_given()) return only_matrix_fluorescence(leaf_, preparation.log);
+    if (auto given = matrix_fluorescence(leaf_, preparation.log)) return given;
     leaf_.refuse_varying_fluorescence();
     const auto make = [&] { return leaf::FluorescenceTable(leaf_.tissue(), preparation.pool); };
     const std::string key = "fluorescence table " + describe(leaf_.tissue());

@@ -49,6 +49,26 @@ TEST(FluorescenceCommand, WritesAMatrixAndABalance) {
   }
 }
 
+/// The command reads its own CSV back as the matrices of a leaf.
+TEST(FluorescenceCommand, WritesMatricesThatALeafTakes) {
+  const TestFolder folder("fluorescence_file");
+  const std::string file = folder.name_of("m.csv");
+  const std::vector<std::string> at{"--excitation", "400:750:50", "--emission", "640:850:30", "--angles", "8,172"};
+  const auto with = [&at](std::vector<std::string> more) {
+    more.insert(more.end(), at.begin(), at.end());
+    return more;
+  };
+  ASSERT_EQ(measured("leaf_solved,fluorescence=0.01", with({"--csv", file})).code, 0);
+  const Outcome o = measured("leaf_lambert,fluorescencematrices=" + file, with({"--csv", "-"}));
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("emission: matrices of m.csv"));
+  const CsvTable made = parse_csv(bytes_of(file)), read = parse_csv(o.out);
+  ASSERT_EQ(made.rows.size(), read.rows.size());
+  for (size_t i = 0; i < made.rows.size(); ++i)
+    for (const char* name : {"theta_deg", "excitation_nm", "emission_nm", "Mb", "Mf"})
+      EXPECT_EQ(made.number(i, name), read.number(i, name)) << name;
+}
+
 TEST(FluorescenceCommand, DrawsMaps) {
   const TestFolder folder("fluorescence_map");
   const std::string chart = folder.name_of("map.svg");
@@ -62,7 +82,7 @@ TEST(FluorescenceCommand, DrawsMaps) {
 TEST(FluorescenceCommand, SaysWhatIsMissing) {
   EXPECT_THAT(measured("diffuse", {}).err, HasSubstr("diffuse has no fluorescence; leaf_solved, abm have"));
   EXPECT_THAT(measured("abm", {"--excitation", "440", "--emission", "740", "--rays", "2"}).err,
-              HasSubstr("give a quantum yield, as in abm,fluorescence=0.01"));
+              HasSubstr("abm emits nothing: fluorescence=0.01 gives leaf_solved, abm a quantum yield"));
   EXPECT_THAT(measured("abm", {"--wavelengths", "550"}).err, HasSubstr("--wavelengths"));
   EXPECT_THAT(measured("abm", {"--excitation", "300:400:50"}).err, HasSubstr("from 400 to 750"));
   EXPECT_THAT(measured("abm", {"--emission", "740,700"}).err, HasSubstr("ascending order"));

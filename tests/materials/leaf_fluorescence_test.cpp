@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "instruments/fluorescence_matrix.h"
 #include "tests/leaf/statistics.h"
 #include "tests/materials/support.h"
@@ -124,8 +126,60 @@ TEST(LeafFluorescence, IsThatOfOneTissue) {
                   fluorescence_of(name, {yield(0.01), texture("chlorophylla", {"1:3"})});
                 }),
                 HasSubstr("give its parameters as numbers"));
-  EXPECT_EQ(fluorescence_of("leaf_lambert", {yield(0.01)}), nullptr);
   EXPECT_EQ(fluorescence_of("diffuse", {}), nullptr);
+}
+
+const std::string kMatrices =
+    "excitation_nm,emission_nm,Mb,Mf\n450,700,1e-4,2e-4\n450,740,3e-4,4e-4\n650,700,5e-4,0\n650,740,7e-4,8e-4\n";
+
+/// Matrices of a file are Lambertian emission of every leaf model, with textures too.
+TEST(LeafFluorescence, TakesMatrices) {
+  const TestFolder folder("matrices");
+  const ParsedParam file = words("fluorescencematrices", {folder.write("leaf.csv", kMatrices)});
+  RandomStream rng(4);
+  for (const char* name : {"abm", "leaf_solved", "leaf_simplified", "leaf_lambert", "leaf"}) {
+    const auto given = fluorescence_of(name, {file, texture("chlorophylla", {"1:3"})});
+    EXPECT_EQ(given->emission_shape(), "matrices of leaf.csv");
+    EXPECT_FALSE(given->is_black());
+    EXPECT_FALSE(given->is_noisy());
+    for (const Vec3& wi : {Vec3{0, 0, 1}, Vec3{0.6f, 0, -0.8f}}) {
+      const FluorescencePhotons photons = given->photons(wi, 740, 450, rng);
+      EXPECT_DOUBLE_EQ(photons.lit_side, 3e-4);
+      EXPECT_DOUBLE_EQ(photons.opposite_side, 4e-4);
+      EXPECT_TRUE(std::isnan(photons.absorbed) && std::isnan(photons.emitted) && std::isnan(photons.reabsorbed));
+      for (const Vec3& wo : {Vec3{0, 0, 1}, Vec3{0, -0.8f, 0.6f}, Vec3{0.28f, 0, -0.96f}})
+        EXPECT_DOUBLE_EQ(given->f(wo, wi, 740, 450, rng), ((wo.z > 0) == (wi.z > 0) ? 3e-4 : 4e-4) / std::numbers::pi);
+    }
+    EXPECT_EQ(given->f({0, 0, 1}, {0, 0, 1}, 760, 450, rng), 0);
+    EXPECT_GT(given->excitation(500), 0);
+    EXPECT_EQ(given->excitation(700), 0);
+    EXPECT_DOUBLE_EQ(fluorescence_of(name, {file, number("float", "fluorescencescale", {0.2})})
+                         ->photons({0, 0, 1}, 740, 450, rng)
+                         .lit_side,
+                     0.6e-4);
+    EXPECT_DOUBLE_EQ(fluorescence_of(name, {file, words("fluorescenceunit", {"energy"})})
+                         ->photons({0, 0, 1}, 740, 450, rng)
+                         .lit_side,
+                     3e-4 * 740 / 450);
+  }
+}
+
+TEST(LeafFluorescence, OfTablesIsByMatricesAlone) {
+  const TestFolder folder("tables");
+  const ParsedParam file = words("fluorescencematrices", {folder.write("leaf.csv", kMatrices)});
+  const ParsedParam table =
+      words("tablefile", {folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,551,.04,.1,.2\n")});
+  for (const char* name : {"leaf_simplified", "leaf_lambert"}) {
+    EXPECT_TRUE(fluorescence_of(name, {})->is_black());
+    EXPECT_EQ(fluorescence_of(name, {})->emission_shape(), "none");
+    EXPECT_THAT(error_of([&] { fluorescence_of(name, {yield(0.01)}); }), HasSubstr("give \"fluorescencematrices\""));
+    EXPECT_FALSE(fluorescence_of(name, {table, file})->is_black());
+  }
+  for (const char* name : {"fluorescencescale", "fluorescenceunit"}) {
+    const ParsedParam given =
+        std::string_view(name) == "fluorescenceunit" ? words(name, {"energy"}) : number("float", name, {2});
+    EXPECT_THAT(error_of([&] { fluorescence_of("leaf_lambert", {given}); }), HasSubstr("has no effect without"));
+  }
 }
 
 /// Reflectance and transmittance are those of the leaf without fluorescence, to the bit.

@@ -301,7 +301,8 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const ConsoleLog log;
   std::set<std::string_view> named;
   for (const Param& p : leaf_params()) {
-    if (p.name.starts_with("pigment") || p.name == "emission") continue;  // files, and what needs them
+    // Files, and what needs them.
+    if (p.name.starts_with("pigment") || p.name == "emission" || p.name.starts_with("fluorescence")) continue;
     const std::string name(p.name);
     ParsedParam given = number("float", name, {p.range.max});
     if (p.kind == ParamKind::boolean) given = flag(name, true);
@@ -318,7 +319,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   std::set<std::string_view> expected{"absorption", "sieve", "fluorescingpigments"};
   for (const leaf::LeafNumber& n : leaf::leaf_parameters()) expected.insert(n.name);
   for (const leaf::PlateNumber& n : leaf::plate_numbers()) expected.insert(n.name);
-  expected.erase("cuticleaspect");
+  expected.erase("cuticleaspect"), expected.erase("fluorescence");
   EXPECT_EQ(named, expected);
   for (const char* name : {"anthocyanins", "brownpigments", "drymatter", "spongyshare", "cuticlerefractivity"})
     EXPECT_TRUE(expected.contains(name));

@@ -49,7 +49,9 @@ Specimen specimen_of(const JobRun& run, const std::string& text) {
          fluorescing_models(session.registry()));
   specimen.fluorescence = fluorescent->fluorescence({light, session.pool(), run.log(), cache});
   if (specimen.fluorescence->is_black())
-    run.log().warn({}, fmt::format("{} emits nothing: give a quantum yield, as in {},fluorescence=0.01", text, text));
+    run.log().warn({}, fmt::format("{} emits nothing: fluorescence=0.01 gives {} a quantum yield, and "
+                                   "fluorescencematrices=FILE gives any leaf matrices",
+                                   text, fluorescing_models(session.registry())));
   return specimen;
 }
 
@@ -94,8 +96,9 @@ Table balance_table(const std::vector<LabelledMatrix>& matrices) {
       table.add("absorbed", absorbed.mean / count, absorbed.standard_error() / count);
       const double emitted = add("emitted", &Cell::emitted), reabsorbed = add("reabsorbed", &Cell::reabsorbed),
                    lit = add("lit_side", &Cell::lit_side), other = add("other_side", &Cell::opposite_side);
-      table.add("escape", emitted > 0 ? (lit + other) / emitted : 0);
-      table.add("residual", emitted > 0 ? 1 - (reabsorbed + lit + other) / emitted : 0);
+      // Unknown (NaN) where matrices of a file are all that is known.
+      table.add("escape", emitted == 0 ? 0 : (lit + other) / emitted);
+      table.add("residual", emitted == 0 ? 0 : 1 - (reabsorbed + lit + other) / emitted);
       table.add("material", material);
     }
   table.document("absorbed", "photons that fluorescing constituents absorb, per incident photon");
