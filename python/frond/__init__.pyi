@@ -230,8 +230,10 @@ def spectrophotometer(material, wavelengths: float | Sequence[float] | str | Non
     json: JSON file to write; - is standard output.
     plot: Chart of R and T against wavelength or angle, or maps of fluorescence over excitation and emission: .svg or .png."""
 
-def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
-    """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
+def goniophotometer(material, wavelengths: float | Sequence[float] | str | None = None, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, fluorescence: bool = False, excitation: float | Sequence[float] | str = '440', emission: float | Sequence[float] | str = '685,740', seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
+    """With fluorescence=True returns the table of fluorescence by direction, without wavelengths.
+
+    Otherwise returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
     `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
     detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm", for bands with names also "band". patches: (number in
     theta, number in phi). With with_, "f" and "f_se" have the materials along a first axis.
@@ -243,10 +245,13 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     illuminant: Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or a spectrum file. By default that of equal energy. Default: stdillum-E.
-    rays: Number of rays for each measurement. Default: 1e6.
+    rays: Number of rays for each measurement; with fluorescence for each pair of wavelengths, divided evenly among the patches. Default: 1e6.
     patches: THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere. Default: 20x40.
     integrate: Integrate f over each patch, without noise, if the material evaluates f exactly and the light is of one wavelength; otherwise use rays.
     rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
+    fluorescence: Measure the fluorescence of both sides: photon radiance per nm of emission over photon irradiance. Excludes wavelengths, integrate, rendered, illuminant.
+    excitation: Wavelengths of excitation. Unit: nm. Range: from 400 to 750. Default: 440. Needs fluorescence.
+    emission: Wavelengths of emission. Unit: nm. Range: from 640 to 850. Default: 685,740. Needs fluorescence.
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.

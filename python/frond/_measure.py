@@ -101,11 +101,15 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 
 
 @_with_keywords_of("goniophotometer")
-def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):
-    """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
+def goniophotometer(material, wavelengths=None, angles=8, *, patches=(20, 40), **options):
+    """With fluorescence=True returns the table of fluorescence by direction, without wavelengths.
+
+    Otherwise returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
     `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
     detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm", for bands with names also "band". patches: (number in
     theta, number in phi). With with_, "f" and "f_se" have the materials along a first axis."""
+    if wavelengths is None or options.get("fluorescence"):
+        return FUNCTIONS["goniophotometer"](material_text(material), wavelengths, angles, patches=patches, **options).table
     import numpy
     nm = wavelengths if isinstance(wavelengths, str) else bands_of(wavelengths)
     theta = reals(angles, "angles", "degrees")

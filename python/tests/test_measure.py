@@ -371,3 +371,28 @@ def test_names_and_bad_words():
         frond.spectrophotometer("leaf_solvd", 551)
     with pytest.raises(frond.InputError):
         frond.spectrophotometer("leaf_solved", 5510)
+
+
+FLUORESCENT = "leaf_solved,fluorescence=0.01"
+
+
+def test_fluorescence_by_direction_adds_up_to_the_matrices(tmp_path):
+    """Both instruments have fluorescence; the integral over the directions of a side is Mb or Mf."""
+    matrices = frond.spectrophotometer(FLUORESCENT, fluorescence=True, excitation=[440, 550], emission=[685, 740], angles=[8, 120],
+                                       csv=tmp_path / "m.csv")
+    assert list(numpy.unique(matrices["excitation_nm"])) == [440, 550] and len(matrices["Mb"]) == 8
+    found = frond.goniophotometer(FLUORESCENT, fluorescence=True, excitation=[440, 550], emission=[685, 740], angles=[8, 120], patches=(6, 4))
+    photons = numpy.asarray(found["f_per_sr_nm"]) * numpy.asarray(found["projected_solid_angle_sr"])
+    lit = (numpy.asarray(found["kind"]) == "lit side").reshape(8, -1)
+    photons = photons.reshape(8, -1)
+    assert numpy.allclose((photons * lit).sum(axis=1), matrices["Mb"], rtol=3e-4)
+    assert numpy.allclose((photons * ~lit).sum(axis=1), matrices["Mf"], rtol=3e-4)
+    # A leaf of another model takes the file.
+    replayed = frond.spectrophotometer(f"leaf_lambert,fluorescencematrices={tmp_path / 'm.csv'}", fluorescence=True, excitation=[440, 550],
+                                       emission=[685, 740], angles=[8, 120])
+    assert numpy.allclose(replayed["Mb"], matrices["Mb"], rtol=1e-7) and numpy.allclose(replayed["Mf"], matrices["Mf"], rtol=1e-7)
+
+
+def test_goniophotometer_without_wavelengths_names_them():
+    with pytest.raises(frond.InputError, match="wavelengths is needed"):
+        frond.goniophotometer("diffuse")

@@ -35,7 +35,10 @@ Hit flat_hit() {
   return hit;
 }
 
-std::string label_of(const Beam& beam) { return beam.band ? beam.band->name : fmt::format("{:g} nm", beam.lambda_nm); }
+std::string label_of(const Beam& beam) {
+  if (beam.emission_nm > 0) return fmt::format("{:g} to {:g} nm", beam.lambda_nm, beam.emission_nm);
+  return beam.band ? beam.band->name : fmt::format("{:g} nm", beam.lambda_nm);
+}
 
 const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
   return bsdf_at(material, beam.band ? beam.band->lit_response.sample(0.5f) : float(beam.lambda_nm), arena);

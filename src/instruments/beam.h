@@ -18,9 +18,10 @@ struct Beam {
   double theta_deg;  ///< from the specimen's +z to the light, in [0, 180]: above 90 the back (abaxial) side is lit
   double lambda_nm;  ///< wavelength, or mean wavelength of the band's response
   const InstrumentBand* band = nullptr;  ///< each ray has a wavelength of its own; nullptr: lambda_nm
+  double emission_nm = 0;                ///< wavelength of the detector for fluorescence; 0: that of the light
 };
 
-/// Returns what texts and charts call the light: "551 nm", or the name of the band.
+/// Returns what texts and charts call the light: "551 nm", "440 to 740 nm" for fluorescence, or the name of the band.
 std::string label_of(const Beam& beam);
 
 /// Returns the unit vector from the specimen to the light, at azimuth 0. At exactly 90 degrees light meets neither

@@ -1,5 +1,6 @@
 #include "instruments/goniophotometer.h"
 
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -68,27 +69,47 @@ Lobes flags_of(const LitMaterial& lit) {
   return bsdf_of(lit.material, lit.beam, arena).flags();
 }
 
+Estimate scaled(const Estimate& e, double scale) {
+  return {e.mean * scale, e.variance * scale * scale, e.third_cumulant * scale * scale * scale};
+}
+
+/// Mean of f over a patch, with directions uniform in the projected solid angle: the square of the cosine is uniform.
+Estimate mean_f(const Density& f, const SphereBox& box, int64_t rays, RandomStream& rng) {
+  Moments moments;
+  for (int64_t i = 0; i < rays; ++i) {
+    const double z = std::sqrt(std::lerp(box.z0 * box.z0, box.z1 * box.z1, rng.uniform_double()));
+    moments.add(
+        f(sphere_direction(std::copysign(z, box.z0 + box.z1), std::lerp(box.phi0, box.phi1, rng.uniform_double()))));
+  }
+  return moments.estimate();
+}
+
 }  // namespace
 
 Estimate GoniophotometerMeasurement::f(size_t patch) const {
+  if (!fluorescence.empty()) return fluorescence[patch];
   const double scale = 1 / sphere.patch(patch).projected_solid_angle;
   if (is_integrated()) return {integral[patch] * scale, 0, 0};
   Moments all = caught[patch];
   all.add_zeros(rays - all.count());
-  const Estimate share = all.estimate();
-  return {share.mean * scale, share.variance * scale * scale, share.third_cumulant * scale * scale * scale};
+  return scaled(all.estimate(), scale);
 }
 
 Estimate GoniophotometerMeasurement::share(bool reflected) const {
   double integrated = 0;
   Moments all;
+  Estimate emitted;
   for (size_t i = 0; i < sphere.size(); ++i) {
     if (is_reflected(sphere.patch(i)) != reflected) continue;
-    if (is_integrated())
+    const double projected = sphere.patch(i).projected_solid_angle;
+    if (!fluorescence.empty())
+      emitted += scaled(fluorescence[i], projected);
+    else if (is_integrated())
       integrated += integral[i];
     else
       all.add(caught[i]);
   }
+  if (!fluorescence.empty()) return emitted;
   if (is_integrated()) return {integrated, 0, 0};
   all.add_zeros(rays - all.count());
   return all.estimate();
@@ -132,6 +153,33 @@ GoniophotometerMeasurement integrate_f(const LitMaterial& lit, const DetectorSph
       constexpr double kNegligible = 1e-12;
       measurement.integral[i] = total(integrate(box, std::ref(density), kNegligible, points_in(box, peaks)));
     }
+  });
+  return measurement;
+}
+
+GoniophotometerMeasurement measure_fluorescence_f(const Fluorescence& fluorescence, const Beam& beam,
+                                                  const DetectorSphere& sphere, int64_t rays, uint64_t seed,
+                                                  const ThreadPool& pool) {
+  check_beam(beam);
+  const int64_t each = rays / static_cast<int64_t>(sphere.size());
+  if (fluorescence.is_noisy() && each < 2)
+    fail({}, "{} rays are fewer than 2 for each of {} patches, which a standard error needs", rays, sphere.size());
+  const Vec3 light = toward_light(beam);
+  GoniophotometerMeasurement measurement{beam, sphere, 0, {}, {}};
+  if (fluorescence.is_noisy()) measurement.rays = each * static_cast<int64_t>(sphere.size());
+  measurement.fluorescence.resize(sphere.size());
+  pool.for_each(static_cast<int64_t>(sphere.size()), [&](int64_t index, int) {
+    check_stop();
+    const auto i = static_cast<size_t>(index);
+    const Patch patch = sphere.patch(i);
+    const SphereBox box = box_of(patch);
+    RandomStream rng(hash_key(seed, i, std::bit_cast<uint64_t>(beam.theta_deg), std::bit_cast<uint64_t>(beam.lambda_nm),
+                              std::bit_cast<uint64_t>(beam.emission_nm)));
+    const auto f = [&](const Vec3& w) { return fluorescence.f(w, light, beam.emission_nm, beam.lambda_nm, rng); };
+    const auto f_cos = [&](const Vec3& w) { return f(w) * std::abs(double(w.z)); };
+    measurement.fluorescence[i] = fluorescence.is_noisy()
+                                      ? mean_f(f, box, each, rng)
+                                      : Estimate{total(integrate(box, f_cos, 0)) / patch.projected_solid_angle, 0, 0};
   });
   return measurement;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "jobs/support/fluorescence_tables.h"
 #include "jobs/support/instrument.h"
 #include "report/chart.h"
 #include "report/patch_charts.h"
@@ -19,11 +20,13 @@ constexpr std::string_view kScales[] = {"linear", "log"};
 
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    kInstrumentWavelengthsParam,
+    kOptionalWavelengthsParam,
     kAnglesParam,
     kWithParam,
     kIlluminantParam,
-    JobParam("rays", count, "Number of rays for each measurement.",
+    JobParam("rays", count,
+             "Number of rays for each measurement; with --fluorescence for each pair of wavelengths, divided evenly "
+             "among the patches.",
              {.default_value = "1e6", .range = kRayCounts, .decides = true}),
     JobParam("patches", text, "THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere.",
              {.type = "THETAxPHI", .default_value = "20x40", .decides = true}),
@@ -32,6 +35,11 @@ constexpr JobParam kParams[] = {
              "wavelength; otherwise use rays.",
              {.decides = true}),
     kRenderedParam,
+    JobParam("fluorescence", flag,
+             "Measure the fluorescence of both sides: photon radiance per nm of emission over photon irradiance.",
+             {.decides = true, .excludes = "wavelengths,integrate,rendered,illuminant"}),
+    excitation_param("440"),
+    emission_param("685,740"),
     kSeedParam,
     kCsvParam,
     kJsonParam,
@@ -52,7 +60,10 @@ DetectorSphere sphere_of(const Arguments& args) {
   return {int(counts[0]), int(counts[1])};
 }
 
-std::string kind_of(const GoniophotometerMeasurement& r, const Patch& p) { return r.is_reflected(p) ? "BRDF" : "BTDF"; }
+std::string kind_of(const GoniophotometerMeasurement& r, const Patch& p) {
+  if (!r.fluorescence.empty()) return r.is_reflected(p) ? "lit side" : "other side";
+  return r.is_reflected(p) ? "BRDF" : "BTDF";
+}
 
 /// Table with one row for each patch of each measurement.
 Table table_of(const std::vector<LabelledPatches>& measurements) {
@@ -71,9 +82,9 @@ Table table_of(const std::vector<LabelledPatches>& measurements) {
       table.add("solid_angle_sr", p.solid_angle);
       table.add("projected_solid_angle_sr", p.projected_solid_angle);
       table.add("kind", kind_of(r, p));
-      table.add("f_per_sr", r.f(i).mean);
+      table.add(r.fluorescence.empty() ? "f_per_sr" : "f_per_sr_nm", r.f(i).mean);
       table.add("f_se", r.f(i).standard_error());
-      table.add("caught", double(r.count(i)));
+      if (r.fluorescence.empty()) table.add("caught", double(r.count(i)));
       table.add("rays", double(r.rays));
       table.add("material", material);
     }
@@ -82,9 +93,13 @@ Table table_of(const std::vector<LabelledPatches>& measurements) {
   table.document("theta_deg", "of the detector, from the front's normal; patches are equal in theta and in phi");
   table.document("phi_deg",
                  "from the light's azimuth; the first patch is centred on 0, the mirror direction is at 180");
-  table.document("f_per_sr", "BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle)");
-  table.document("f_se", "standard error of f_per_sr");
-  table.document("caught", "number of rays that reached the patch");
+  if (table.find("caught")) {
+    table.document("f_per_sr", "BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle)");
+    table.document("caught", "number of rays that reached the patch");
+  } else {
+    table.document("f_per_sr_nm", "photon radiance per nm of emission over photon irradiance, 1/(sr nm)");
+  }
+  table.document("f_se", "standard error of f");
   table.document("rays", "number of rays of light; 0 where f was integrated over the patches, without noise");
   return table;
 }
@@ -114,11 +129,15 @@ Table summary_of(const std::vector<LabelledPatches>& measurements) {
   return table;
 }
 
-/// Throws InputError for requests that would fail after the measurements.
-void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSphere& sphere) {
-  const MeasurementCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.lights().size()};
+/// Throws InputError for charts that cannot be drawn.
+void check_charts(const JobRun& run, const MeasurementCounts& counts, const DetectorSphere& sphere) {
   if (run.args.given("plot")) check_plane_chart(counts, sphere);
   if (run.args.given("map")) check_map_chart(counts, sphere);
+}
+
+/// Throws InputError for requests that would fail after the measurements.
+void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSphere& sphere) {
+  check_charts(run, {tested.materials().size(), tested.angles_deg().size(), tested.lights().size()}, sphere);
   for (size_t i = 0; i < tested.size(); ++i) check_no_delta_lobe(tested.lit_material(i));
 }
 
@@ -133,26 +152,59 @@ GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& 
   return measure_f(lit, sphere, rays, run.session().pool(), tested.progress(i, rays));
 }
 
-/// The job. Charts are checked before the first ray.
-Result goniophotometer(const JobRun& run) {
-  check_chart_param(run, "plot");
-  warn_if_nothing_is_kept(run);
-  check_chart_param(run, "map");
-  const DetectorSphere sphere = sphere_of(run.args);
-  const MaterialsUnderTest tested(run);
-  check(run, tested, sphere);
-  std::vector<LabelledPatches> measurements;
-  for (size_t i = 0; i < tested.size(); ++i)
-    measurements.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
+/// Writes the charts; returns the tables and the text.
+Result result_of(const JobRun& run, const DetectorSphere& sphere, const std::vector<LabelledPatches>& measurements,
+                 std::vector<std::string> notes, const std::string& last_lines) {
   if (run.control.progress) run.control.progress->finish();
   if (run.args.given("plot")) write_chart(run.args.text("plot"), plane_chart(measurements));
   if (run.args.given("map"))
     write_chart(run.args.text("map"), map_chart(measurements, run.args.text("map-scale") == "log"));
   const Table summary = summary_of(measurements);
   return {.tables = {table_of(measurements), summary},
-          .notes = tested.notes("goniophotometer"),
+          .notes = std::move(notes),
           .text = fmt::format("{} x {} patches; where f is largest\n{}{}", sphere.thetas(), sphere.phis(),
-                              to_text(summary), tested.illuminant_text())};
+                              to_text(summary), last_lines)};
+}
+
+/// The job with --fluorescence.
+Result measured_fluorescence(const JobRun& run, const DetectorSphere& sphere) {
+  const std::vector<double> excitation_nm = ascending_wavelengths(run.args, "excitation"),
+                            emission_nm = ascending_wavelengths(run.args, "emission");
+  std::vector<Beam> beams;
+  for (const double theta_deg : run.args.numbers("angles"))
+    for (const double excitation : excitation_nm)
+      for (const double emission : emission_nm) beams.push_back({theta_deg, excitation, nullptr, emission});
+  check_charts(run,
+               {materials_of(run).size(), run.args.numbers("angles").size(), excitation_nm.size() * emission_nm.size()},
+               sphere);
+  const std::vector<FluorescentSpecimen> specimens = fluorescent_specimens(run);
+  std::vector<LabelledPatches> measurements;
+  for (const FluorescentSpecimen& s : specimens)
+    for (const Beam& beam : beams) {
+      run.check_stop();
+      if (run.control.progress)
+        run.control.progress->update(double(measurements.size()) / double(specimens.size() * beams.size()), {});
+      measurements.push_back({s.label, measure_fluorescence_f(*s.fluorescence, beam, sphere, run.args.count("rays"),
+                                                              s.seed, run.session().pool())});
+    }
+  return result_of(run, sphere, measurements, fluorescence_notes(run, "goniophotometer", specimens),
+                   emission_text(specimens));
+}
+
+/// The job. Charts are checked before the first ray.
+Result goniophotometer(const JobRun& run) {
+  check_chart_param(run, "plot");
+  warn_if_nothing_is_kept(run);
+  check_chart_param(run, "map");
+  const DetectorSphere sphere = sphere_of(run.args);
+  if (run.args.flag("fluorescence")) return measured_fluorescence(run, sphere);
+  check_wavelengths_are_given(run);
+  const MaterialsUnderTest tested(run);
+  check(run, tested, sphere);
+  std::vector<LabelledPatches> measurements;
+  for (size_t i = 0; i < tested.size(); ++i)
+    measurements.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
+  return result_of(run, sphere, measurements, tested.notes("goniophotometer"), tested.illuminant_text());
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "core/fluorescence.h"
 #include "jobs/support/fluorescence_tables.h"
 #include "jobs/support/instrument.h"
 #include "report/chart.h"
@@ -16,16 +15,9 @@ namespace {
 
 using enum ArgumentKind;
 
-/// As for all instruments, but not needed with --fluorescence, which has wavelengths of excitation and emission.
-constexpr JobParam kWavelengthsParam = [] {
-  JobParam param = kInstrumentWavelengthsParam;
-  param.required = false;
-  return param;
-}();
-
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    kWavelengthsParam,
+    kOptionalWavelengthsParam,
     kAnglesParam,
     kWithParam,
     kIlluminantParam,
@@ -39,15 +31,8 @@ constexpr JobParam kParams[] = {
     JobParam("fluorescence", flag,
              "Measure the excitation-emission matrices of both sides: photons per nm of emission per incident photon.",
              {.decides = true, .excludes = "wavelengths,se,rendered,illuminant"}),
-    JobParam("excitation", numbers, "Wavelengths of excitation.",
-             {.default_value = "400:750:10",
-              .unit = "nm",
-              .range = kExcitation_nm,
-              .decides = true,
-              .needs = "fluorescence"}),
-    JobParam(
-        "emission", numbers, "Wavelengths of emission.",
-        {.default_value = "640:850:10", .unit = "nm", .range = kEmission_nm, .decides = true, .needs = "fluorescence"}),
+    excitation_param("400:750:10"),
+    emission_param("640:850:10"),
     kSeedParam,
     kCsvParam,
     kJsonParam,
@@ -124,8 +109,7 @@ Result spectrophotometer(const JobRun& run) {
   warn_if_nothing_is_kept(run);
   // Other tables and charts, of other wavelengths.
   if (run.args.flag("fluorescence")) return fluorescence_result(run);
-  if (!run.args.given("wavelengths"))
-    fail({}, "{} is needed: {}", run.args.spelled("wavelengths"), kWavelengthsParam.doc);
+  check_wavelengths_are_given(run);
   // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;
   const int64_t by_default = run.args.given("se") ? kMostRays : kRays;

@@ -21,7 +21,9 @@ ColorScale scale_of(const std::vector<LabelledPatches>& measurements, bool logar
     for (size_t i = 0; i < r.sphere.size(); ++i)
       if (const double f = r.f(i).mean; f > 0) range.include(f);
   if (range.is_empty()) range = {1e-6, 1};
-  return {{"f (sr⁻¹)", {logarithmic ? std::min(range.low, range.high / kLeastSpan) : 0, range.high}, logarithmic}};
+  return {{name_of_f(measurements[0].measurement, "f"),
+           {logarithmic ? std::min(range.low, range.high / kLeastSpan) : 0, range.high},
+           logarithmic}};
 }
 
 /// Draws a hemisphere seen from the light's side, with the light from the left. If the back is lit, azimuths are
@@ -55,10 +57,12 @@ Chart map_chart(const std::vector<LabelledPatches>& measurements, bool logarithm
   for (const auto& [material, r] : measurements) {
     const double theta_deg = r.beam.theta_deg;
     const double radius = std::min(theta_deg, 180 - theta_deg) / 90;
-    const std::string light = fmt::format("BTDF, seen through: light at {:g}°, {}", theta_deg, label_of(r.beam));
+    const std::string light = fmt::format("{}, seen through: light at {:g}°, {}",
+                                          r.fluorescence.empty() ? "BTDF" : "other side", theta_deg, label_of(r.beam));
     for (const bool reflected : {true, false}) {
       const bool labelled = chart.panels.empty();
-      const PolarMap map{chart.panels.emplace_back(disk_panel(400, reflected ? "BRDF: " + material : light))};
+      const PolarMap map{chart.panels.emplace_back(
+          disk_panel(400, reflected ? (r.fluorescence.empty() ? "BRDF: " : "lit side: ") + material : light))};
       add_patches(map, scale, r, reflected);
       map.add_circles();
       if (reflected) map.add_mark({-radius, 0}, Mark::star, labelled ? "direction of the light" : "");

@@ -33,7 +33,7 @@ Panel empty_panel(const std::vector<LabelledPatches>& measurements, double theta
   const double mirror = std::min(theta_deg, 180 - theta_deg), high = top > 0 ? top : 1;
   const std::string title = fmt::format("{} light at θ = {:g}°", reflected ? "Reflected," : "Transmitted,", theta_deg);
   const Axis x{"angle from the normal (°), light’s side negative", {-90, 90}, false, 30},
-      y{reflected ? "BRDF (sr⁻¹)" : "BTDF (sr⁻¹)", {0, high}};
+      y{name_of_f(measurements[0].measurement, reflected ? "BRDF" : "BTDF"), {0, high}};
   Panel panel{420, 320, title, x, y};
   panel.series.push_back(line("", "#808080", 1.5, Dash::solid, {{mirror, 0}, {mirror, high}}));
   if (reflected) panel.series.push_back(line("", "#808080", 1.5, Dash::dotted, {{-mirror, 0}, {-mirror, high}}));

@@ -79,7 +79,60 @@ TEST(FluorescenceCommand, DrawsMaps) {
               HasSubstr("at least two wavelengths of each are needed"));
 }
 
+TEST(FluorescenceCommand, MeasuresDirections) {
+  const TestFolder folder("fluorescence_directions");
+  const std::string plot = folder.name_of("plane.svg"), map = folder.name_of("map.svg"),
+                    matrices = folder.name_of("m.csv");
+  const Outcome o = frond_command({"goniophotometer", "leaf_solved,fluorescence=0.01",
+                                   "--with",          "abm,fluorescence=0.01",
+                                   "--fluorescence",  "--no-cache",
+                                   "--excitation",    "440",
+                                   "--emission",      "685,740",
+                                   "--angles",        "8,120",
+                                   "--patches",       "6x4",
+                                   "--rays",          "2400",
+                                   "--csv",           "-",
+                                   "--plot",          plot,
+                                   "--map",           map});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("# frond 0.1.0 goniophotometer, fluorescence"));
+  EXPECT_THAT(o.out, HasSubstr("# material: abm,fluorescence=0.01; emission: Gaussians at 688 and 746 nm"));
+  EXPECT_THAT(bytes_of(plot), HasSubstr("440 to 740 nm"));
+  EXPECT_THAT(bytes_of(plot), HasSubstr("fluorescence (sr⁻¹ nm⁻¹)"));
+  EXPECT_THAT(bytes_of(map), HasSubstr("lit side: leaf_solved,fluorescence=0.01"));
+  const CsvTable csv = parse_csv(o.out);
+  ASSERT_EQ(csv.rows.size(), 2u * 2 * 2 * 24);
+  ASSERT_EQ(frond_command({"spectrophotometer", "leaf_solved,fluorescence=0.01", "--fluorescence", "--no-cache",
+                           "--excitation", "440", "--emission", "685,740", "--angles", "8,120", "--csv", matrices})
+                .code,
+            0);
+  const CsvTable m = parse_csv(bytes_of(matrices));
+  double sides[2] = {};
+  int noisy = 0;
+  for (size_t i = 0; i < csv.rows.size(); ++i) {
+    EXPECT_EQ(csv.number(i, "rays"), i < 96 ? 0 : 2400);
+    noisy += csv.number(i, "f_se") > 0 ? 1 : 0;
+    if (i < 96) {
+      EXPECT_EQ(csv.number(i, "f_se"), 0);
+    }
+    EXPECT_EQ(csv.text(i, "kind"), (csv.number(i, "theta_deg") < 90) == (i % 96 < 48) ? "lit side" : "other side");
+    sides[csv.text(i, "kind") == "other side"] +=
+        csv.number(i, "f_per_sr_nm") * csv.number(i, "projected_solid_angle_sr");
+    if (i >= 96 || i % 24 < 23) continue;
+    EXPECT_EQ(csv.number(i, "emission_nm"), m.number(i / 24, "emission_nm"));
+    EXPECT_EQ(csv.number(i, "excitation_nm"), 440);
+    EXPECT_NEAR(sides[0], m.number(i / 24, "Mb"), 3e-4 * sides[0]);
+    EXPECT_NEAR(sides[1], m.number(i / 24, "Mf"), 3e-4 * sides[1]);
+    sides[0] = sides[1] = 0;
+  }
+  EXPECT_GT(noisy, 90);  // at grazing angles few walks of 100 leave
+}
+
 TEST(FluorescenceCommand, SaysWhatIsMissing) {
+  EXPECT_THAT(frond_command({"goniophotometer", "abm"}).err, HasSubstr("--wavelengths is needed"));
+  EXPECT_THAT(frond_command({"goniophotometer", "diffuse", "--fluorescence"}).err, HasSubstr("has no fluorescence"));
+  EXPECT_THAT(frond_command({"goniophotometer", "abm", "--fluorescence", "--integrate"}).err, HasSubstr("--integrate"));
+
   EXPECT_THAT(measured("diffuse", {}).err, HasSubstr("diffuse has no fluorescence; leaf_solved, abm have"));
   EXPECT_THAT(measured("abm", {"--excitation", "440", "--emission", "740", "--rays", "2"}).err,
               HasSubstr("abm emits nothing: fluorescence=0.01 gives leaf_solved, abm a quantum yield"));

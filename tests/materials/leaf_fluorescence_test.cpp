@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "instruments/fluorescence_matrix.h"
+#include "instruments/goniophotometer.h"
 #include "tests/leaf/statistics.h"
 #include "tests/materials/support.h"
 #include "tests/support/input_error.h"
@@ -195,6 +196,37 @@ TEST(LeafFluorescence, ChangesNothingElse) {
       EXPECT_TRUE(s->wi == t->wi && s->f == t->f && s->pdf == t->pdf) << name;
     }
   }
+}
+
+/// What a goniophotometer finds over the directions of a side is Mb or Mf. The scores of the walks' patches against the
+/// solution have a chi-square distribution.
+TEST(FluorescenceByDirection, AddsUpToTheMatrix) {
+  const auto solved = fluorescence_of("leaf_solved", {yield(0.01)}), walked = fluorescence_of("abm", {yield(0.01)});
+  const DetectorSphere sphere(10, 8);
+  const ThreadPool pool(2);
+  for (const double theta_deg : {8.0, 130.0}) {
+    const Beam beam{theta_deg, 440, nullptr, 685};
+    RandomStream rng(5);
+    const FluorescencePhotons photons = solved->photons(toward_light(beam), 685, 440, rng);
+    const auto exact = measure_fluorescence_f(*solved, beam, sphere, 2, 1, pool);
+    EXPECT_TRUE(exact.is_integrated());
+    EXPECT_NEAR(exact.share(true).mean, photons.lit_side, 2e-4 * photons.lit_side);
+    EXPECT_NEAR(exact.share(false).mean, photons.opposite_side, 2e-4 * photons.opposite_side);
+    const auto noisy = measure_fluorescence_f(*walked, beam, sphere, 160'000, 1, pool);
+    EXPECT_EQ(noisy.rays, 160'000);
+    double squares = 0;
+    for (size_t i = 0; i < sphere.size(); ++i) {
+      const double z = (noisy.f(i).mean - exact.f(i).mean) / noisy.f(i).standard_error();
+      squares += z * z;
+    }
+    EXPECT_LT(std::abs(z_of_chi_square(squares, int(sphere.size()))), z_limit(4));
+    const auto again = measure_fluorescence_f(*walked, beam, sphere, 160'000, 1, ThreadPool(1));
+    for (size_t i = 0; i < sphere.size(); ++i) EXPECT_EQ(again.f(i).mean, noisy.f(i).mean);
+  }
+  EXPECT_THAT(error_of([&] {
+                measure_fluorescence_f(*walked, {8, 440, nullptr, 685}, sphere, 100, 1, pool);
+              }),
+              HasSubstr("100 rays are fewer than 2 for each of 80 patches"));
 }
 
 TEST(FluorescenceMatrix, IsTheSameForAnyNumberOfThreads) {

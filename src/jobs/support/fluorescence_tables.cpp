@@ -13,46 +13,12 @@ namespace {
 
 using Cell = FluorescenceMatrix::Cell;
 
-/// Returns the wavelengths of a parameter. Throws InputError unless they ascend.
-std::vector<double> wavelengths_of(const Arguments& args, std::string_view name) {
-  std::vector<double> nm = args.numbers(name);
-  if (nm.empty() || std::ranges::adjacent_find(nm, std::greater_equal()) != nm.end())
-    fail({}, "{}: wavelengths in ascending order are needed, as in 400:750:10", args.spelled(name));
-  return nm;
-}
-
-/// A material under test and its fluorescence.
-struct Specimen {
-  std::string label;
-  std::shared_ptr<Material> material;  ///< outlives its fluorescence
-  std::shared_ptr<const Fluorescence> fluorescence;
-};
-
 /// Returns the names of the leaf models that have fluorescence: those whose mean is the random walk's.
 std::string fluorescing_models(const Registry& registry) {
   std::vector<std::string_view> names;
   for (const MaterialInfo* model : leaf_models(registry))
     if (model->leaf->is_exact) names.push_back(model->name);
   return fmt::format("{}", fmt::join(names, ", "));
-}
-
-/// Makes a material from text. Throws InputError for one that has no fluorescence; warns of one that emits nothing.
-Specimen specimen_of(const JobRun& run, const std::string& text) {
-  Session& session = run.session();
-  const std::filesystem::path& cache = run.context.options().cache;
-  const OneWavelength light(kEmission_nm.min);  // instruments have no film; fluorescence has wavelengths of its own
-  Specimen specimen{text, prepared_material(text, session.registry(), light, session.pool(), run.log(), cache),
-                    nullptr};
-  const auto* fluorescent = dynamic_cast<const FluorescentMaterial*>(specimen.material.get());
-  if (!fluorescent)
-    fail({}, "{} has no fluorescence; {} have, with a quantum yield: NAME,fluorescence=0.01", text,
-         fluorescing_models(session.registry()));
-  specimen.fluorescence = fluorescent->fluorescence({light, session.pool(), run.log(), cache});
-  if (specimen.fluorescence->is_black())
-    run.log().warn({}, fmt::format("{} emits nothing: fluorescence=0.01 gives {} a quantum yield, and "
-                                   "fluorescencematrices=FILE gives any leaf matrices",
-                                   text, fluorescing_models(session.registry())));
-  return specimen;
 }
 
 /// Table with one row for each pair of wavelengths of each measurement.
@@ -112,54 +78,87 @@ Table balance_table(const std::vector<LabelledMatrix>& matrices) {
   return table;
 }
 
-/// Returns the comment lines of the CSV file. Every result names the emission shape, which decides the ratio of its
-/// peaks.
-std::vector<std::string> notes_of(const JobRun& run, const std::vector<Specimen>& specimens) {
-  std::vector<std::string> notes{fmt::format("frond {} spectrophotometer, fluorescence", FROND_VERSION)};
-  for (const Specimen& s : specimens)
+FluorescentSpecimen specimen_of(const JobRun& run, const std::string& text) {
+  Session& session = run.session();
+  const std::filesystem::path& cache = run.context.options().cache;
+  const OneWavelength light(kEmission_nm.min);  // instruments have no film; fluorescence has wavelengths of its own
+  FluorescentSpecimen specimen{
+      text, prepared_material(text, session.registry(), light, session.pool(), run.log(), cache), nullptr,
+      // Adding a material does not change the random numbers of others.
+      hash_key(run.args.seed("seed"), material_seed(text))};
+  const auto* fluorescent = dynamic_cast<const FluorescentMaterial*>(specimen.material.get());
+  if (!fluorescent)
+    fail({}, "{} has no fluorescence; {} have, with a quantum yield: NAME,fluorescence=0.01", text,
+         fluorescing_models(session.registry()));
+  specimen.fluorescence = fluorescent->fluorescence({light, session.pool(), run.log(), cache});
+  if (specimen.fluorescence->is_black())
+    run.log().warn({}, fmt::format("{} emits nothing: fluorescence=0.01 gives {} a quantum yield, and "
+                                   "fluorescencematrices=FILE gives any leaf matrices",
+                                   text, fluorescing_models(session.registry())));
+  return specimen;
+}
+
+}  // namespace
+
+std::vector<double> ascending_wavelengths(const Arguments& args, std::string_view name) {
+  std::vector<double> nm = args.numbers(name);
+  if (nm.empty() || std::ranges::adjacent_find(nm, std::greater_equal()) != nm.end())
+    fail({}, "{}: wavelengths in ascending order are needed, as in 400:750:10", args.spelled(name));
+  return nm;
+}
+
+std::vector<FluorescentSpecimen> fluorescent_specimens(const JobRun& run) {
+  std::vector<FluorescentSpecimen> specimens;
+  for (const std::string& text : materials_of(run)) specimens.push_back(specimen_of(run, text));
+  return specimens;
+}
+
+std::vector<std::string> fluorescence_notes(const JobRun& run, std::string_view instrument,
+                                            const std::vector<FluorescentSpecimen>& specimens) {
+  std::vector<std::string> notes{fmt::format("frond {} {}, fluorescence", FROND_VERSION, instrument)};
+  for (const FluorescentSpecimen& s : specimens)
     notes.push_back(fmt::format("material: {}; emission: {}", s.label, s.fluorescence->emission_shape()));
   notes.push_back(fmt::format("seed: {}", run.args.seed("seed")));
   notes.push_back("Photons, not energy. Reabsorbed fluorescence does not excite again.");
   return notes;
 }
 
-}  // namespace
+std::string emission_text(const std::vector<FluorescentSpecimen>& specimens) {
+  std::string text;
+  for (const FluorescentSpecimen& s : specimens)
+    text += fmt::format("{}; emission: {}\n", s.label, s.fluorescence->emission_shape());
+  return text;
+}
 
 // Errors of the request and of every material are reported before the first ray.
 Result fluorescence_result(const JobRun& run) {
-  const std::vector<double> excitation_nm = wavelengths_of(run.args, "excitation"),
-                            emission_nm = wavelengths_of(run.args, "emission"), angles_deg = run.args.numbers("angles");
+  const std::vector<double> excitation_nm = ascending_wavelengths(run.args, "excitation"),
+                            emission_nm = ascending_wavelengths(run.args, "emission"),
+                            angles_deg = run.args.numbers("angles");
   // Of each pair of wavelengths: standard errors of about 2 % where the leaf absorbs.
   constexpr int64_t kRays = 10'000;
   const int64_t rays = run.args.given("rays") ? run.args.count("rays") : kRays;
-  const std::vector<std::string> texts = materials_of(run);
-  const size_t count = texts.size() * angles_deg.size();
+  const size_t count = materials_of(run).size() * angles_deg.size();
   if (run.args.given("plot")) check_excitation_emission_chart(count, excitation_nm.size(), emission_nm.size());
-  std::vector<Specimen> specimens;
-  for (const std::string& text : texts) specimens.push_back(specimen_of(run, text));
+  const std::vector<FluorescentSpecimen> specimens = fluorescent_specimens(run);
 
   std::vector<LabelledMatrix> matrices;
-  for (const Specimen& s : specimens)
+  for (const FluorescentSpecimen& s : specimens)
     for (const double theta_deg : angles_deg) {
       const auto progress = [&](double share) {
         run.check_stop();
         if (run.control.progress) run.control.progress->update((double(matrices.size()) + share) / double(count), {});
       };
-      // Adding a material does not change the random numbers of others.
-      const uint64_t seed = hash_key(run.args.seed("seed"), material_seed(s.label));
       matrices.push_back(
-          {s.label, measure_fluorescence(*s.fluorescence, {theta_deg, excitation_nm, emission_nm, rays, seed},
+          {s.label, measure_fluorescence(*s.fluorescence, {theta_deg, excitation_nm, emission_nm, rays, s.seed},
                                          run.session().pool(), progress)});
     }
   if (run.control.progress) run.control.progress->finish();
   if (run.args.given("plot")) write_chart(run.args.text("plot"), excitation_emission_chart(matrices));
   const Table balance = balance_table(matrices);
-  std::string text;
-  for (const Specimen& s : specimens)
-    text += fmt::format("{}; emission: {}\n", s.label, s.fluorescence->emission_shape());
   return {.tables = {matrix_table(matrices), balance},
-          .notes = notes_of(run, specimens),
-          .text = text + "photons per incident photon, over all emission\n" + to_text(balance)};
+          .notes = fluorescence_notes(run, "spectrophotometer", specimens),
+          .text = emission_text(specimens) + "photons per incident photon, over all emission\n" + to_text(balance)};
 }
 
 }  // namespace frond

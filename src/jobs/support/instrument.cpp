@@ -69,9 +69,15 @@ std::string MaterialsUnderTest::illuminant_line() const {
   return bands_.empty() ? "" : "Bands are weighted by response and illuminant: " + run_.args.text("illuminant");
 }
 
+void check_wavelengths_are_given(const JobRun& run) {
+  if (!run.args.given("wavelengths"))
+    fail({}, "{} is needed: {}", run.args.spelled("wavelengths"), kInstrumentWavelengthsParam.doc);
+}
+
 void add_light(Table& table, const Beam& beam) {
   if (beam.band) table.add("band", beam.band->name);
-  table.add("wavelength_nm", beam.lambda_nm);
+  table.add(beam.emission_nm > 0 ? "excitation_nm" : "wavelength_nm", beam.lambda_nm);
+  if (beam.emission_nm > 0) table.add("emission_nm", beam.emission_nm);
 }
 
 /// The seed depends on the material's text, so that adding a material does not change the results of others.

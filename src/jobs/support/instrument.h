@@ -23,6 +23,14 @@ inline constexpr JobParam kInstrumentWavelengthsParam(
     "wavelengths", ArgumentKind::text,
     "Wavelengths, as in 450,550,670 or 400:700:10, from 360 to 2500; or bands,responses=...",
     {.type = "WAVELENGTHS", .unit = "nm", .aliases = "wavelength", .decides = true, .required = true});
+/// The same for instruments with --fluorescence, which has wavelengths of excitation and emission instead.
+inline constexpr JobParam kOptionalWavelengthsParam = [] {
+  JobParam param = kInstrumentWavelengthsParam;
+  param.required = false;
+  return param;
+}();
+/// Throws InputError unless that parameter is given.
+void check_wavelengths_are_given(const JobRun& run);
 inline constexpr JobParam kIlluminantParam(
     "illuminant", ArgumentKind::text,
     "Spectrum of the light, of any unit, by which bands with responses are weighted: name of a spectrum, or a "
