@@ -123,7 +123,7 @@ def table(leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, s
     equalsides: Write the mean of both sides, at angles up to 90 degrees.
     output: File to write; - is standard output. FILE.leaf, of a mode table: for other programs (docs/file_formats.md)."""
 
-def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
     Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal, or incident=light if their model is a random walk.
@@ -138,6 +138,8 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     paths: Number of paths for each view, rounded up to a multiple of 32; at least 32 for each wavelength are traced. Range: from 1 to 4294967296. Default: 65536.
     rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0, up to 1.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
+    fluorescence: Measure the radiance of fluorescence instead, and the share of it that escapes from the canopy. Excludes wavelengths, compare.
+    emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
@@ -154,7 +156,7 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
 
     Returns the job's table."""
 
-def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
@@ -163,6 +165,9 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     With by="instance" also the table of the instances, one row each: "instance", "area", for PAR "par_umol_m2_s" (absorbed photons
     by leaf area), and for each wavelength or band "absorbed_550", "absorbed_nir", ... (shares of the incident light), each with a
     column "_se" (standard error).
+
+    With fluorescence=True the first table is the balance of photons, and of the instances "excited_umol_m2_s", "emitted_740" and
+    "left_740" (nmol/(m2 s nm) by leaf area).
 
     Measure the light budget of a scene: reflection, transmission, absorption.
 
@@ -178,6 +183,8 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     by: Measure the absorption of each instance of an object, one row each; the table of shares is then in a file beside that of csv: leaves-flux.csv beside leaves.csv. One of instance.
     instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0, up to 1. Needs by.
     irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global. Unit: W/(m2 nm).
+    fluorescence: Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward. Excludes wavelengths, rms, instance_error, irradiance, checkpoint, resume.
+    emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.

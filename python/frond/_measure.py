@@ -94,10 +94,14 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 
     With by="instance" also the table of the instances, one row each: "instance", "area", for PAR "par_umol_m2_s" (absorbed photons
     by leaf area), and for each wavelength or band "absorbed_550", "absorbed_nir", ... (shares of the incident light), each with a
-    column "_se" (standard error)."""
+    column "_se" (standard error).
+
+    With fluorescence=True the first table is the balance of photons, and of the instances "excited_umol_m2_s", "emitted_740" and
+    "left_740" (nmol/(m2 s nm) by leaf area)."""
     result = FUNCTIONS["flux"](scene, wavelengths, by=by, **options)
     tables = result.tables
-    return tables["flux"] if by is None else (tables["flux"], tables["instances"])
+    shares = tables["fluorescence" if options.get("fluorescence") else "flux"]
+    return shares if by is None else (shares, tables["instances"])
 
 
 @_with_keywords_of("goniophotometer")

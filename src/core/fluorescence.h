@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/math/random.h"
 #include "core/math/vec.h"
 #include "core/units/interval.h"
+#include "core/wavelengths.h"
 
 namespace frond {
 
@@ -58,6 +61,26 @@ class FluorescentMaterial {
   /// Returns the material's fluorescence, not null. Independent of Material::prepare, so that nothing is computed
   /// unless fluorescence is asked for. Throws InputError.
   virtual std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const = 0;
+};
+
+/// Whether a band is of fluorescence: of the light that surfaces emit at its wavelength, without what they reflect.
+/// Such a band has a name and no response. A path carries bands of one kind alone.
+inline bool is_of_fluorescence(const Band& band) { return band.response.empty() && !band.name.empty(); }
+
+/// Returns the index of the first band of fluorescence: all further ones are of this kind. The number of bands if there
+/// is none.
+inline size_t first_fluorescence_band(const WavelengthStrategy& wavelengths) {
+  const auto bands = wavelengths.bands();
+  return static_cast<size_t>(std::ranges::find_if(bands, is_of_fluorescence) - bands.begin());
+}
+
+/// Base of the integrators that compute bands of fluorescence, beside Integrator; asked for by dynamic_cast.
+class FluorescenceIntegrator {
+ public:
+  virtual ~FluorescenceIntegrator() = default;
+  /// Called once, before Integrator::prepare, if the wavelengths have bands of fluorescence. `by_material`: by
+  /// SurfacePoint::material_id; nullptr: the material emits nothing.
+  virtual void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) = 0;
 };
 
 }  // namespace frond

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/fluorescence.h"
+#include "integrators/fluorescence_tracer.h"
 #include "integrators/path_parts.h"
 #include "integrators/path_pilots.h"
 #include "integrators/path_tracer.h"
@@ -56,7 +58,7 @@ constexpr Param kPath[] = {
 };
 
 /// Unidirectional path tracing; light sampling and BSDF sampling combined by the power heuristic.
-class PathIntegrator final : public Integrator {
+class PathIntegrator final : public Integrator, public FluorescenceIntegrator {
  public:
   explicit PathIntegrator(const Params& p)
       : settings_{.max_depth = p.integer("maxdepth"),
@@ -71,9 +73,17 @@ class PathIntegrator final : public Integrator {
         adapted_{.light_samples = p.integer("lightsamples") == 0, .scattered_rays = p.integer("scatteredrays") == 0},
         strategy_(light_strategy(p)) {}
 
-  void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
+  void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) override {
+    fluorescence_ = std::move(by_material);
+  }
+
+  void prepare(const World& world) override {
+    selector_ = LightSelector(world, strategy_);
+    if (!fluorescence_.empty()) emitting_.emplace(fluorescence_, world);
+  }
 
   std::string adapt(const World& world, const CameraSampling& sampling) override {
+    if (emitting_ && first_fluorescence_band(world.wavelengths()) == 0) return {};  // no reflected light
     AdaptedSettings adapted = adapted_;
     adapted.light_samples = adapted.light_samples && settings_.sample_lights && selector_.has_extent();
     if (!adapted.light_samples && !adapted.scattered_rays) return {};
@@ -86,7 +96,9 @@ class PathIntegrator final : public Integrator {
   }
 
   std::unique_ptr<Tracer> tracer(const World& world) const override {
-    return make_path_tracer(world, selector_, settings_);
+    auto tracer = make_path_tracer(world, selector_, settings_);
+    if (!emitting_) return tracer;
+    return make_fluorescence_tracer(world, selector_, settings_, *emitting_, std::move(tracer));
   }
 
  private:
@@ -103,6 +115,8 @@ class PathIntegrator final : public Integrator {
   AdaptedSettings adapted_;
   LightSelector::Strategy strategy_;
   LightSelector selector_;
+  std::vector<std::shared_ptr<const Fluorescence>> fluorescence_;  ///< by material; empty: no band is of fluorescence
+  std::optional<EmittingMaterials> emitting_;
 };
 
 std::unique_ptr<Integrator> make_path(const Params& p) { return std::make_unique<PathIntegrator>(p); }

@@ -7,6 +7,7 @@
 
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
+#include "jobs/support/scene_fluorescence.h"
 #include "jobs/support/time_limit.h"
 #include "radiometry/brf_comparison.h"
 #include "render/parts/part_file.h"
@@ -46,6 +47,10 @@ constexpr JobParam kParams[] = {
         "Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below "
         "this; --paths is then not used."),
     kTimeLimitParam,
+    scene_fluorescence_param(
+        "Measure the radiance of fluorescence instead, and the share of it that escapes from the canopy.",
+        "wavelengths,compare"),
+    kSceneEmissionParam,
     kSwapParam,
     kIntegratorParam,
     kSeedParam,
@@ -244,11 +249,13 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
 Result brf(const JobRun& run) {
   check_chart_param(run, "plot");
   warn_if_nothing_is_kept(run);
+  const bool is_fluorescence = run.args.flag("fluorescence");
   const BrfRequest request{.views = views_of(run.args),
                            .target = target_of(run.args),
                            .period = period_of(run.args),
-                           .wavelengths = wavelengths_text(run.args),
-                           .keeps_depth = run.args.given("integrator")};
+                           .wavelengths = is_fluorescence ? emission_text(run.args) : wavelengths_text(run.args),
+                           .keeps_depth = run.args.given("integrator"),
+                           .fluorescence = is_fluorescence};
   if (run.args.given("compare")) return run_comparison(run, request);
   std::optional<ResumeFile> resume_file;
   if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
@@ -274,6 +281,7 @@ Result brf(const JobRun& run) {
   run.log().info(
       fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", measurement.paths, 100 * error));
   warn_of_time_limit(run, measurement.paths, error);
+  if (is_fluorescence) return fluorescence_brf_result(run, *meter, measurement, control);
   Result result{.tables = {{"brf"}},
                 .facts = {{"quantity", std::string(measurement.quantity)},
                           {"paths", double(measurement.paths)},

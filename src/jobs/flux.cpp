@@ -9,6 +9,7 @@
 #include "jobs/support/flux_tables.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
+#include "jobs/support/scene_fluorescence.h"
 #include "jobs/support/time_limit.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/instance_errors.h"
@@ -52,6 +53,10 @@ constexpr JobParam kParams[] = {
              "of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the "
              "scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global.",
              {.type = "SPECTRUM", .unit = "W/(m2 nm)", .decides = true}),
+    scene_fluorescence_param(
+        "Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward.",
+        "wavelengths,rms,instance-error,irradiance,checkpoint,resume"),
+    kSceneEmissionParam,
     kSwapParam,
     kSeedParam,
     kIgnoreUnsupportedParam,
@@ -279,6 +284,7 @@ void add_instances(const JobRun& run, const FluxMeasurement& measurement, const 
 
 /// The job: traces light paths until the requested number or error is reached, with checkpoints.
 Result flux(const JobRun& run) {
+  if (run.args.flag("fluorescence")) return fluorescence_flux_result(run);
   std::optional<ResumeFile> resume_file;
   if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
   const SpectrumPtr irradiance = named_irradiance(run);

@@ -70,7 +70,8 @@ double BrfMeasurement::relative_error() const {
 
 BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other)
     : request_(request) {
-  prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description);
+  prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description,
+                         request.fluorescence);
   constexpr size_t kMostViews = 65536;  // of a film's columns
   if (request.views.size() > kMostViews)
     fail({}, "{} directions of view: {} is the limit", request.views.size(), kMostViews);
@@ -102,7 +103,7 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
                     "what is printed as standard error is too small; {} is the same leaf without noise",
                     reference_model(session.registry()).name, noiseless_model(session.registry()).name));
   const HorizontalIrradiance irradiance(scene_);
-  for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
+  for (const double e : irradiance.bands()) white_.push_back(request.fluorescence ? 1 : e / std::numbers::pi);
   size_t beams = 0;
   for (size_t i = 0; i < scene.lights().size(); ++i) {
     if (irradiance.shares()[i] <= 0) continue;
@@ -115,6 +116,7 @@ BrfMeasurement BrfMeter::read(const Film& film) const {
   BrfMeasurement measurement{.views = request_.views, .bands = {}, .values = {}, .rows = {}};
   measurement.has_heavy_tails = has_heavy_tails_;
   if (is_hemispherical_) measurement.quantity = "HDRF";
+  if (request_.fluorescence) measurement.quantity = "radiance";
   measurement.sun_zenith_deg = sun_zenith_deg_;
   const auto bands = scene_.scene().wavelengths().bands();
   measurement.bands.assign(bands.begin(), bands.end());

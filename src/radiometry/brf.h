@@ -27,6 +27,8 @@ struct BrfRequest {
   std::optional<std::array<double, 2>> period = {};  ///< replaces the scene's period
   std::string wavelengths = {};                      ///< a PluginText of `bands`
   bool keeps_depth = false;  ///< true: path lengths are limited as in the scene; false: unlimited
+  /// True: radiance of the bands of fluorescence, which are then the only ones, instead of a reflectance factor.
+  bool fluorescence = false;
 };
 
 /// Reflectance factor of a scene: radiance in a direction over the radiance of a white Lambertian plane in the same
@@ -34,7 +36,7 @@ struct BrfRequest {
 struct BrfMeasurement {
   std::vector<ViewDirection> views;
   std::vector<Band> bands;
-  std::vector<MeanError> values;  ///< by view, then band
+  std::vector<MeanError> values;  ///< by view, then band: reflectance factor, or radiance of fluorescence
   std::vector<double> rows;       ///< for each value, BrfMeter::kRows independent estimates
   uint64_t paths = 0;             ///< for each view
   /// Name of the quantity: "BRF" (bidirectional) if all light comes from one direction, else "HDRF"
@@ -66,7 +68,7 @@ class BrfMeter {
  private:
   BrfRequest request_;
   LoadedScene scene_ = {};
-  std::vector<double> white_;  ///< radiance of a white plane, band by band
+  std::vector<double> white_;  ///< radiance of a white plane, band by band; of fluorescence 1
   bool has_heavy_tails_ = false;
   bool is_hemispherical_ = false;  ///< light comes from more than one direction
   std::optional<double> sun_zenith_deg_;

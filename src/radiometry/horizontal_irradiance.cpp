@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/fluorescence.h"
 #include "core/stop.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_label.h"
@@ -109,7 +110,7 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded) {
   if (listed.empty()) spectrum_ = spectrum_of(nm_, values_);
   for (const Band& band : wavelengths.bands()) {
     bands_.push_back(band.response.empty() ? at(double(float(band.nm))) : mean_under(band.response, *spectrum_));
-    if (!(bands_.back() > 0))
+    if (!(bands_.back() > 0 || is_of_fluorescence(band)))
       fail(loaded.description().lights.empty() ? Location{} : loaded.description().lights[0].plugin.where,
            "no light falls on the scene from above, from +z, {}", place_of(band));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/fluorescence.h"
 #include "core/log.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
@@ -93,12 +94,16 @@ void keep_energy(SceneDescription& description, const Registry& registry) {
 
 void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
-                            SceneDescription& description) {
+                            SceneDescription& description, bool fluorescence) {
   constexpr double kDeepest = 1 << 20;
   keep_energy(description, registry);
   if (!wavelengths.empty())
     set_wavelengths(description, wavelengths, {std::make_shared<const std::string>("wavelengths")});
-  if (make_wavelengths(description, registry)->bands().empty()) {
+  const auto strategy = make_wavelengths(description, registry);
+  if (!fluorescence && std::ranges::any_of(strategy->bands(), is_of_fluorescence))
+    fail(wavelengths_plugin(description, registry).where,
+         "bands of fluorescence have no reflectance: brf and flux measure them with --fluorescence");
+  if (strategy->bands().empty()) {
     const ParsedPlugin plugin = wavelengths_plugin(description, registry);
     fail(plugin.where, "\"{}\" is for images of colours: a measurement needs bands, as in 608,551,455 or 400:700:10",
          plugin.name);

@@ -13,10 +13,10 @@ void keep_energy(SceneDescription& description, const Registry& registry);
 
 /// Prepares an image's scene for radiometry: applies keep_energy, ends paths by Russian roulette only unless
 /// `keeps_depth`, scatters one ray at each hit unless the integrator states the number, and sets the period and the
-/// wavelengths (a PluginText of `bands`). Throws InputError.
+/// wavelengths (a PluginText of `bands`). Throws InputError, also if bands of fluorescence are not what is measured.
 void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
-                            SceneDescription& description);
+                            SceneDescription& description, bool fluorescence = false);
 
 /// Returns a text that identifies a measurement together with the scene's own identity. `what`: its kind and other
 /// parameters.

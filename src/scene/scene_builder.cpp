@@ -2,9 +2,11 @@
 #include <cmath>
 
 #include "core/camera_samples.h"
+#include "core/fluorescence.h"
 #include "core/log.h"
 #include "core/messages/problems.h"
 #include "core/stop.h"
+#include "scene/fluorescence_by_material.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry/shape_emitter.h"
 #include "scene/geometry_builder.h"
@@ -154,9 +156,25 @@ class SceneBuilder {
     scene_.radius_ = b.is_empty() ? 1 : length(b.max - b.min) / 2;
     check_rays(b);
     build_tiling();
+    if (first_fluorescence_band(*scene_.wavelengths_) < scene_.wavelengths_->bands().size())
+      set_fluorescence(preparation);
     scene_.integrator_->prepare(scene_);
     if (const std::string adapted = scene_.integrator_->adapt(scene_, scene_.camera_sampling()); !adapted.empty())
       log_.info(adapted);
+  }
+
+  /// Passes the fluorescence of the materials to the integrator. Throws InputError if it computes none.
+  void set_fluorescence(const Preparation& preparation) {
+    auto* integrator = dynamic_cast<FluorescenceIntegrator*>(scene_.integrator_.get());
+    if (!integrator)
+      fail(description_.integrator.where, "integrator \"{}\" computes no bands of fluorescence: \"path\" does",
+           description_.integrator.name);
+    for (size_t i = 0; i < scene_.is_leaf_.size(); ++i)
+      if (const ParsedPlugin& plugin = description_.materials[i].plugin;
+          scene_.is_leaf_[i] && scene_.material_at_[i] &&
+          is_mixture(registry_.materials.get(plugin.name, plugin.where)))
+        log_.warn(plugin.where, "the leaves of a mixture do not fluoresce");
+    integrator->set_fluorescence(fluorescence_by_material(scene_.material_at_, preparation));
   }
 
   template <class Info, class... Args>

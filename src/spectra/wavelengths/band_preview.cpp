@@ -3,13 +3,15 @@
 #include <map>
 #include <vector>
 
+#include "core/fluorescence.h"
 #include "spectra/cie.h"
 
 namespace frond {
 
 std::vector<Triple> xyz_of_bands(std::span<const Band> bands) {
   std::map<double, std::vector<size_t>> at;  // indices of the bands by wavelength, ascending
-  for (size_t i = 0; i < bands.size(); ++i) at[bands[i].nm].push_back(i);
+  for (size_t i = 0; i < bands.size(); ++i)
+    if (!is_of_fluorescence(bands[i])) at[bands[i].nm].push_back(i);
   if (at.size() < 4 || at.begin()->first > 450 || at.rbegin()->first < 650) return {};
   std::vector<Triple> weights(bands.size());
   auto above = at.begin();  // first band at or above nm

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/fluorescence.h"
 #include "spectra/spd_file.h"
 #include "spectra/wavelengths/registry.h"
 #include "spectra/wavelengths/response_sampler.h"
@@ -47,6 +48,15 @@ constexpr Param kParams[] = {
      .unit = "nm",
      .range = {0.1, 2200},
      .doc = "Step of the evenly spaced wavelengths."},
+    {.name = "fluorescence",
+     .kind = ParamKind::real,
+     .unit = "nm",
+     .range = kEmission_nm,
+     .doc =
+         "One band of fluorescence at each of these wavelengths: the light that leaves emit there, without what they "
+         "reflect (docs/fluorescence.md). Reflected light has bands beside these only where one of the other "
+         "parameters is given.",
+     .list = true},
 };
 
 std::vector<double> even_wavelengths(const Params& p) {
@@ -66,6 +76,13 @@ void check_choice(const Params& p) {
   for (const std::string_view name : {"lambdamin", "lambdamax", "step"})
     if ((listed || sensor) && p.given(name))
       fail(p.where(name), "\"{}\" is for evenly spaced wavelengths: others are given", name);
+}
+
+/// Whether the reflected light has bands: there are no others, or parameters of theirs are given.
+bool has_reflected(const Params& p) {
+  constexpr std::string_view kOfReflected[] = {"wavelengths", "responses", "lambdamin", "lambdamax", "step"};
+  return !p.given("fluorescence") ||
+         std::ranges::any_of(kOfReflected, [&p](std::string_view name) { return p.given(name); });
 }
 
 /// Throws InputError for a name that cannot stand in a column of CSV or in a channel of an EXR file.
@@ -88,16 +105,19 @@ class Bands final : public WavelengthStrategy {
     const auto files = p.files("responses");
     if (!files.empty())
       read_responses(files, p);
-    else
+    else if (has_reflected(p))
       for (const double nm : listed.empty() ? even : listed) bands_.push_back({nm});
     const Location where = p.where(files.empty() ? "wavelengths" : "responses");
+    check_single_wavelengths(bands_, where);
+    reflected_ = bands_.size();
+    add_fluorescence(p);
     if (bands_.size() > kMostBands) fail(where, "these are {} bands, {} is the limit", bands_.size(), kMostBands);
     for (const Band& band : bands_)
       if (band.response.empty())
         nm_.push_back(static_cast<float>(band.nm));
       else
         samplers_.emplace_back(band.response, where);
-    check_single_wavelengths(where);
+    if (has_fluorescence()) nm_.clear();  // paths carry wavelengths of excitation, too, which are continuous
     listed_nm_ = nm_;
     std::ranges::sort(listed_nm_);
     find_range();
@@ -105,24 +125,17 @@ class Bands final : public WavelengthStrategy {
 
   /// Chooses the bands at random: a few samples may miss a band, unlike samples by sample_for_index.
   SampledWavelengths sample(float u) const override {
-    const double turn = double(u) * double(bands_.size());
+    // Twice as many turns where the two kinds of bands alternate.
+    const double turn = double(u) * double(bands_.size()) * (has_fluorescence() && reflected_ > 0 ? 2 : 1);
     return sample_for_index(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));
   }
 
-  /// The lanes are a quarter of the bands apart, so that noise common to the lanes of a path changes the brightness of
-  /// a pixel and not its colour.
+  /// A path carries reflected light or fluorescence, in turn.
   SampledWavelengths sample_for_index(uint64_t index, float u) const override {
-    const size_t count = bands_.size(), lanes = std::min<size_t>(count, kLanes);
-    SampledWavelengths lambda;
-    lambda.count = static_cast<int>(lanes);
-    for (size_t i = 0; i < lanes; ++i) {
-      const size_t band = count <= kLanes ? i : (index + i * count / kLanes) % count;
-      lambda.band[i] = static_cast<uint16_t>(band);
-      lambda.active[i] = true;
-      lambda.nm[i] = samplers_.empty() ? nm_[band] : samplers_[band].sample(u);
-      lambda.pdf[i] = 1;
-    }
-    return lambda;
+    const size_t emitted = bands_.size() - reflected_;
+    if (emitted == 0) return some_of(0, reflected_, index, u);
+    if (reflected_ == 0) return some_of(0, emitted, index, u);
+    return index % 2 == 0 ? some_of(0, reflected_, index / 2, u) : some_of(reflected_, emitted, index / 2, u);
   }
 
   Interval range_nm() const override { return range_nm_; }
@@ -144,11 +157,38 @@ class Bands final : public WavelengthStrategy {
   }
 
  private:
+  bool has_fluorescence() const { return reflected_ < bands_.size(); }
+
+  /// Returns up to four of `count` bands. The lanes are a quarter of the bands apart, so that noise common to the lanes
+  /// of a path changes the brightness of a pixel and not its colour.
+  SampledWavelengths some_of(size_t first, size_t count, uint64_t index, float u) const {
+    const size_t lanes = std::min<size_t>(count, kLanes);
+    SampledWavelengths lambda;
+    lambda.count = static_cast<int>(lanes);
+    for (size_t i = 0; i < lanes; ++i) {
+      const size_t band = first + (count <= kLanes ? i : (index + i * count / kLanes) % count);
+      lambda.band[i] = static_cast<uint16_t>(band);
+      lambda.active[i] = true;
+      lambda.nm[i] = band < samplers_.size() ? samplers_[band].sample(u) : static_cast<float>(bands_[band].nm);
+      lambda.pdf[i] = 1;
+    }
+    return lambda;
+  }
+
+  /// Appends the bands of fluorescence, named F740.
+  void add_fluorescence(const Params& p) {
+    for (const double nm : p.reals("fluorescence")) bands_.push_back({nm, {}, fmt::format("F{:.8g}", nm)});
+    check_single_wavelengths(std::span(bands_).subspan(reflected_), p.where("fluorescence"));
+    for (size_t i = reflected_; i < bands_.size(); ++i)
+      if (std::ranges::count(bands_, bands_[i].name, &Band::name) > 1)
+        fail(p.where("names"), "\"{}\" is the name of a band of fluorescence", bands_[i].name);
+  }
+
   /// Bands without a response are named after their wavelength, which must therefore be unique.
-  void check_single_wavelengths(const Location& where) const {
+  static void check_single_wavelengths(std::span<const Band> bands, const Location& where) {
     constexpr double kLeast_nm = 1e-6;
     std::vector<double> nm;
-    for (const Band& band : bands_)
+    for (const Band& band : bands)
       if (band.response.empty()) nm.push_back(band.nm);
     std::ranges::sort(nm);
     for (size_t i = 1; i < nm.size(); ++i)
@@ -185,10 +225,14 @@ class Bands final : public WavelengthStrategy {
       range_nm_.min = std::min(range_nm_.min, sampler.support_nm().min);
       range_nm_.max = std::max(range_nm_.max, sampler.support_nm().max);
     }
+    if (!has_fluorescence()) return;
+    range_nm_.min = std::min(range_nm_.min, kExcitation_nm.min);
+    range_nm_.max = std::max(range_nm_.max, kExcitation_nm.max);
   }
 
   std::vector<Band> bands_;
-  std::vector<float> nm_;                  ///< wavelengths of the bands; empty if they have responses
+  size_t reflected_ = 0;                   ///< number of bands of reflected light, which are the first
+  std::vector<float> nm_;                  ///< wavelengths of the bands, if all are fixed; else empty
   std::vector<float> listed_nm_;           ///< the same, ascending
   std::vector<ResponseSampler> samplers_;  ///< one for each band with a response
   Interval range_nm_{};

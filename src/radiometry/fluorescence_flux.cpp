@@ -1,0 +1,429 @@
+#include "radiometry/fluorescence_flux.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "core/math/sampling.h"
+#include "core/stop.h"
+#include "integrators/excitation.h"
+#include "integrators/path_parts.h"
+#include "integrators/path_state.h"
+#include "radiometry/flux_sums.h"
+#include "radiometry/incident_light.h"
+#include "radiometry/radiometer_scene.h"
+#include "radiometry/ratio_sums.h"
+#include "scene/fluorescence_by_material.h"
+#include "scene/format/plugin_text.h"
+#include "spectra/wavelengths/spectrum_points.h"
+#include "system/machine.h"
+
+namespace frond {
+namespace {
+
+/// Quantities of one path at each wavelength of emission. Absorption by each material follows.
+enum Quantity : size_t { kEmitted, kReabsorbed, kLeft, kUpward, kDownward, kAbsorbedBy };
+
+/// Quantities of an instance: the excitation, then these at each wavelength of emission.
+enum OfInstance : size_t { kEmittedThere, kLeftThere, kQuantitiesOfInstance };
+
+/// Returns the photons of a spectrum (W m^-2 nm^-1) over the wavelengths of excitation, umol m^-2 s^-1.
+double photons_of(const Spectrum& irradiance) {
+  const std::vector<double> nm = points_nm(irradiance, kExcitation_nm);
+  double sum = 0;
+  for (size_t i = 1; i < nm.size(); ++i) {
+    const double middle = (nm[i] + nm[i - 1]) / 2;
+    sum += (nm[i] - nm[i - 1]) * double(irradiance.at(float(middle))) * photons_per_energy(middle);
+  }
+  return sum;
+}
+
+/// Density of wavelengths of excitation of the whole scene: photons of the light, times the mean over the materials of
+/// the share that they absorb.
+ExcitationSampler excitation_of(const std::vector<std::shared_ptr<const Fluorescence>>& by_material,
+                                const Spectrum& irradiance) {
+  return ExcitationSampler([&](double nm) {
+    double absorbed = 0;
+    for (const auto& fluorescence : by_material)
+      if (fluorescence) absorbed += fluorescence->excitation(nm);
+    return absorbed * double(irradiance.at(float(nm))) * nm;
+  });
+}
+
+}  // namespace
+
+double photons_per_energy(double nm) {
+  // Planck constant times speed of light times Avogadro constant, J m / mol (exact since 2019); nm and umol.
+  constexpr double kEnergy = 6.62607015e-34 * 299792458 * 6.02214076e23 * 1e9 * 1e-6;
+  return nm / kEnergy;
+}
+
+bool has_radiometric_light(const SceneDescription& description) {
+  return !description.lights.empty() && std::ranges::all_of(description.lights, [](const LightDescription& light) {
+    return light.plugin.name == "sky" && !find_param(light.plugin.params, "illuminance");
+  });
+}
+
+struct FluorescenceFluxMeter::State {
+  LoadedScene loaded;
+  Target target;
+  std::vector<std::shared_ptr<const Fluorescence>> by_material;
+  SpectrumPtr irradiance;  ///< of the target, over the wavelengths of excitation
+  double incident;         ///< photons_of(irradiance)
+  IncidentLight light;
+  ExcitationSampler excitation;
+  size_t materials, emissions;
+  Moment excited = {};
+  std::vector<Moment> moments = {};    ///< by quantity and wavelength of emission
+  std::vector<RatioSums> escape = {};  ///< by wavelength of emission
+  std::vector<uint64_t> seen = {};     ///< number of paths, by wavelength of emission
+  std::unique_ptr<InstanceSums> by_instance = {};
+  uint64_t paths = 0;
+
+  size_t quantities() const { return kAbsorbedBy + materials; }
+  const Scene& scene() const { return loaded.scene(); }
+};
+
+/// Accumulators of one block of paths.
+class FluorescenceFluxMeter::Block {
+ public:
+  static constexpr uint64_t kPaths = 1024;
+
+  explicit Block(State& state)
+      : moments(state.quantities() * state.emissions),
+        escape(state.emissions),
+        seen(state.emissions),
+        state_(state),
+        values_(state.quantities()) {}
+
+  /// Throws SurfaceError.
+  void trace(uint64_t first, uint64_t count) {
+    constexpr uint64_t kPolled = 16;  // paths
+    for (uint64_t i = first; i < first + count; ++i) {
+      if (i % kPolled == 0) check_stop();
+      RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
+      emission_ = state_.scene().wavelengths().sample_for_index(i, random.uniform());
+      std::ranges::fill(values_, SampledSpectrum());
+      excited_ = 0;
+      trace_path(hash_key(state_.scene().seed(), uint64_t{kKeys}, i), random);
+      add_path();
+    }
+  }
+  /// Adds to the sums of instances, which have no block of their own: once the block counts.
+  void add_instances() {
+    for (const auto& [instance, quantity, share] : of_instances_) state_.by_instance->add(instance, quantity, share);
+    of_instances_ = {};
+  }
+
+  Moment excited;
+  std::vector<Moment> moments;
+  std::vector<RatioSums> escape;
+  std::vector<uint64_t> seen;
+
+ private:
+  /// Uses of the scene's seed.
+  enum SeedUse : uint64_t { kStream = 0x666c756f, kKeys };
+  struct OfOneInstance {
+    uint64_t instance;
+    size_t quantity;
+    double share;
+  };
+
+  void trace_path(uint64_t key, RandomStream& random) {
+    const Target& t = state_.target;
+    const SampledWavelengths lambda = state_.excitation.sample(random.uniform());
+    const Vec2 u{random.uniform(), random.uniform()};
+    const auto light = state_.light.sample(random, lambda);
+    if (!light) return;
+    // Photons that the lanes stand for, relative to all incident ones.
+    SampledSpectrum photons;
+    for (int e = 0; e < lambda.count; ++e) {
+      const float nm = lambda.nm[size_t(e)], density = lambda.pdf[size_t(e)] * float(lambda.count);
+      photons[e] = light->weight[e] * state_.irradiance->at(nm) *
+                   float(photons_per_energy(double(nm)) / state_.incident) / density;
+    }
+    if (photons.is_black()) return;
+    const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
+    const Vec3d d = to_double(light->direction);
+    const Scene& scene = state_.scene();
+    const Ray ray{to_float(on_target - d * distance_above(scene, t, -d.z) - scene.origin()), light->direction};
+    follow(
+        ray, lambda, photons, key, random, arena_,
+        [&](const SurfacePoint& point, const Vec3& toward_light, const SampledSpectrum& before, const SampledSpectrum&,
+            uint64_t vertex_key) { excite(point, toward_light, lambda, before, vertex_key, random); },
+        [](bool, const SampledSpectrum&) {});
+  }
+
+  /// Adds what light excites at a surface, and follows the emitted light.
+  void excite(const SurfacePoint& point, const Vec3& toward_light, const SampledWavelengths& lambda,
+              const SampledSpectrum& photons, uint64_t key, RandomStream& random) {
+    const Fluorescence* fluorescence = state_.by_material[point.material_id].get();
+    if (!fluorescence) return;
+    const Vec3 wi = point.hit.shading.to_local(toward_light);
+    SampledSpectrum emitted, reabsorbed, lit, opposite;
+    double absorbed = 0;
+    for (int e = 0; e < lambda.count; ++e) {
+      if (photons[e] == 0) continue;
+      double absorbed_here = 0;
+      for (int f = 0; f < emission_.count; ++f) {
+        const FluorescencePhotons p =
+            fluorescence->photons(wi, double(emission_.nm[size_t(f)]), double(lambda.nm[size_t(e)]), random);
+        absorbed_here += p.absorbed / emission_.count;
+        emitted[f] += photons[e] * float(p.emitted);
+        reabsorbed[f] += photons[e] * float(p.reabsorbed);
+        lit[f] += photons[e] * float(p.lit_side);
+        opposite[f] += photons[e] * float(p.opposite_side);
+      }
+      absorbed += double(photons[e]) * absorbed_here;
+    }
+    const SampledSpectrum left = lit + opposite;
+    excited_ += absorbed;
+    values_[kEmitted] += emitted;
+    values_[kReabsorbed] += reabsorbed;
+    values_[kLeft] += left;
+    if (state_.by_instance && point.instance_id > 0) add_instance(point.instance_id, absorbed, emitted, left);
+    const float same = sum(lit), both = sum(left);
+    if (!(both > 0)) return;
+    emit(point, *fluorescence, wi, lambda, photons, std::clamp(same / both, 0.05f, 0.95f), key, random);
+  }
+
+  /// Follows light that leaves a surface. `same_side`: probability of the lit side.
+  void emit(const SurfacePoint& point, const Fluorescence& fluorescence, const Vec3& wi,
+            const SampledWavelengths& lambda, const SampledSpectrum& photons, float same_side, uint64_t key,
+            RandomStream& random) {
+    const bool is_same = random.uniform() < same_side;
+    Vec3 wo = sample_cosine_hemisphere({random.uniform(), random.uniform()});
+    if (is_same != (wi.z > 0)) wo.z = -wo.z;
+    if (wo.z == 0) return;
+    const double per_density = double(kPi) / double(is_same ? same_side : 1 - same_side);
+    SampledSpectrum emitted;
+    for (int f = 0; f < emission_.count; ++f)
+      for (int e = 0; e < lambda.count; ++e) {
+        if (photons[e] == 0) continue;
+        const double value =
+            fluorescence.f(wo, wi, double(emission_.nm[size_t(f)]), double(lambda.nm[size_t(e)]), random);
+        emitted[f] += photons[e] * float(value * per_density);
+      }
+    Ray ray;
+    set_leaving_ray(point.hit, point.hit.shading.to_world(wo), ray);
+    SampledWavelengths active = emission_;
+    active.retire_black_lanes(emitted);
+    follow(
+        ray, active, emitted, hash_key(key, uint64_t{kKeys}), random, emission_arena_,
+        [&](const SurfacePoint& at, const Vec3&, const SampledSpectrum& before, const SampledSpectrum& after,
+            uint64_t) { values_[kAbsorbedBy + at.material_id] += SampledSpectrum(before.v - after.v); },
+        [&](bool is_upward, const SampledSpectrum& share) { values_[is_upward ? kUpward : kDownward] += share; });
+  }
+
+  /// Follows light until it is absorbed or leaves the scene. Calls at_hit(point, toward, before, after, key) at each
+  /// surface: the direction in which the light came from, and the light before and after the scattering; and
+  /// at_end(is_upward, light) where it leaves.
+  template <class Hit, class End>
+  void follow(Ray ray, SampledWavelengths lambda, SampledSpectrum light, uint64_t key, RandomStream& random,
+              Arena& arena, const Hit& at_hit, const End& at_end) {
+    constexpr int kFirstRoulette = 3;
+    constexpr float kFull = 0.25f;  // share of the first light below which Russian roulette may end a path
+    const float full = kFull * light.max();
+    SurfacePoint point;
+    for (int vertex = 0, depth = 0; vertex - depth <= kMostPassed && !light.is_black(); ++vertex) {
+      poll_();
+      const VertexKey at = vertex_key(key, uint64_t(vertex));
+      if (!state_.scene().intersect(ray, at.key(Use::ray), point)) return at_end(ray.d.z > 0, light);
+      arena.reset();
+      Scattered scattered;
+      const bool scatters = name_material_in_errors(point, [&] {
+        const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, arena);
+        if (!bsdf) return false;
+        LocalBsdf local;
+        local.set(*bsdf, point.hit, -ray.d);
+        local.scatter_light(random, scattered);
+        if (!is_valid_sample(scattered))
+          throw SurfaceError(point.material_id, "it scatters weights that are negative, infinite or not a number");
+        return true;
+      });
+      if (!scatters) {
+        set_leaving_ray(point.hit, ray.d, ray);
+        continue;
+      }
+      const SampledSpectrum before = light;
+      light *= scattered.weight;
+      at_hit(point, -ray.d, before, light, at.value);
+      lambda.retire_black_lanes(light);
+      if (++depth >= kFirstRoulette && !survives_roulette(light.max(), full, random, light)) return;
+      set_leaving_ray(point.hit, scattered.direction, ray);
+    }
+  }
+
+  static float sum(const SampledSpectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+
+  void add_instance(uint64_t instance, double excited_there, const SampledSpectrum& emitted,
+                    const SampledSpectrum& left) {
+    of_instances_.push_back({instance, 0, excited_there});
+    for (int f = 0; f < emission_.count; ++f) {
+      const size_t first = 1 + emission_.band[size_t(f)] * kQuantitiesOfInstance;
+      of_instances_.push_back({instance, first + kEmittedThere, double(emitted[f])});
+      of_instances_.push_back({instance, first + kLeftThere, double(left[f])});
+    }
+  }
+
+  void add_path() {
+    excited.add(excited_);
+    for (int f = 0; f < emission_.count; ++f) {
+      const size_t at = emission_.band[size_t(f)];
+      ++seen[at];
+      for (size_t q = 0; q < values_.size(); ++q) moments[q * state_.emissions + at].add(double(values_[q][f]));
+      const auto left = double(values_[kLeft][f]);
+      if (left > 0) escape[at].add(double(values_[kUpward][f]) / left, left);
+    }
+  }
+
+  State& state_;
+  Arena arena_, emission_arena_;
+  StopPoll poll_;
+  SampledWavelengths emission_;          ///< of the current path
+  std::vector<SampledSpectrum> values_;  ///< of the current path, by quantity
+  double excited_ = 0;                   ///< of the current path
+  std::vector<OfOneInstance> of_instances_;
+};
+
+FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription description,
+                                             const FluorescenceFluxRequest& request, const Scene* other) {
+  if (description.has_media()) fail(description.media.front().plugin.where, "flux does not trace participating media");
+  prepare_for_radiometry(session.registry(), fmt::format("bands,fluorescence={}", fmt::join(request.emission_nm, ",")),
+                         request.period, false, description, true);
+  LoadedScene loaded =
+      session.load(std::move(description),
+                   {.command = measurement_text("flux of fluorescence", request.target, request.period)}, other);
+  const Scene& scene = loaded.scene();
+  const Target target = request.target ? *request.target : default_target(scene, other ? silent_log() : session.log());
+  check_target(scene, target);
+  const size_t materials = loaded.description().materials.size();
+  std::vector<const Material*> all;
+  for (size_t i = 0; i < materials; ++i) all.push_back(scene.material(i));
+  auto by_material =
+      fluorescence_by_material(all, {scene.wavelengths(), session.pool(), session.log(), session.cache()});
+  SpectrumPtr irradiance = horizontal_irradiance(scene, kExcitation_nm);
+  const double incident = photons_of(*irradiance);
+  if (!(incident > 0)) fail({}, "the scene has no light from 400 to 750 nm, which excites fluorescence");
+  ExcitationSampler excitation = excitation_of(by_material, *irradiance);
+  IncidentLight light(scene, HorizontalIrradiance(loaded), excitation.sample(0.5f));
+  state_ =
+      std::make_unique<State>(State{std::move(loaded), target, std::move(by_material), std::move(irradiance), incident,
+                                    std::move(light), std::move(excitation), materials, request.emission_nm.size()});
+  state_->moments.resize(state_->quantities() * state_->emissions);
+  state_->escape.resize(state_->emissions);
+  state_->seen.resize(state_->emissions);
+  if (!request.by_instance) return;
+  const uint64_t instances = state_->scene().geometry().instances();
+  const size_t cells = 1 + kQuantitiesOfInstance * state_->emissions;
+  if (instances == 0) fail({}, "this scene has no instances of objects (ObjectInstance, Shape \"instances\")");
+  if (const double bytes = double(instances) * double(cells) * InstanceSums::kCellBytes; bytes > machine_memory())
+    fail({}, "{} instances and {} wavelengths need {:.1f} GB of memory: use fewer wavelengths", instances,
+         state_->emissions, bytes * 1e-9);
+  state_->by_instance = std::make_unique<InstanceSums>(instances, cells);
+}
+
+FluorescenceFluxMeter::~FluorescenceFluxMeter() = default;
+
+const LoadedScene& FluorescenceFluxMeter::loaded() const { return state_->loaded; }
+
+const Target& FluorescenceFluxMeter::target() const { return state_->target; }
+
+uint64_t FluorescenceFluxMeter::paths() const { return state_->paths; }
+
+void FluorescenceFluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control) {
+  // Blocks are traced in batches; their sums are added in order, so that the result does not depend on threads.
+  constexpr uint64_t kBlocks = 256;
+  RenderStatistics statistics;
+  const RenderTimer timer;
+  const StopScope stop(control.stop);
+  const DeadlineScope deadline(control.deadline);
+  for (uint64_t done = 0; done < paths && !control.is_over();) {
+    const uint64_t round = std::min(paths - done, kBlocks * Block::kPaths);
+    std::vector<std::unique_ptr<Block>> blocks((round + Block::kPaths - 1) / Block::kPaths);
+    size_t complete = 0;  // number of the first blocks that are complete
+    std::mutex in_order;
+    try {
+      pool.for_each(int64_t(blocks.size()), [&](int64_t block, int) {
+        const uint64_t begin = uint64_t(block) * Block::kPaths;
+        auto one = std::make_unique<Block>(*state_);
+        one->trace(state_->paths + begin, std::min(Block::kPaths, round - begin));
+        const std::lock_guard lock(in_order);
+        blocks[size_t(block)] = std::move(one);
+        for (; complete < blocks.size() && blocks[complete]; ++complete) blocks[complete]->add_instances();
+      });
+    } catch (const SurfaceError& error) {
+      const MaterialDescription& material = state_->loaded.description().materials[error.material_id];
+      fail(material.plugin.where, "{} has a defect: {}", name_in_messages(material), error.what());
+    } catch (const Stopped&) {  // those before the first incomplete block count
+      if (!control.is_over()) throw;
+      blocks.resize(complete);
+    }
+    for (const auto& one : blocks) {
+      state_->excited += one->excited;
+      for (size_t i = 0; i < state_->moments.size(); ++i) state_->moments[i] += one->moments[i];
+      for (size_t i = 0; i < state_->emissions; ++i)
+        state_->seen[i] += one->seen[i], state_->escape[i] += one->escape[i];
+    }
+    const uint64_t traced = std::min(round, blocks.size() * Block::kPaths);
+    state_->paths += traced;
+    done += traced;
+    statistics.paths = done;
+    timer.read(statistics);
+    if (control.progress) control.progress->update(double(done) / double(paths), statistics);
+  }
+  if (control.progress) control.progress->finish();
+}
+
+FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {
+  const State& s = *state_;
+  const auto means = [&](size_t quantity) {
+    std::vector<MeanError> result;
+    for (size_t i = 0; i < s.emissions; ++i) result.push_back(s.moments[quantity * s.emissions + i].mean(s.seen[i]));
+    return result;
+  };
+  FluorescenceFluxMeasurement m{.emission_nm = {},
+                                .shapes = {},
+                                .incident = s.incident,
+                                .excited = s.excited.mean(s.paths),
+                                .emitted = means(kEmitted),
+                                .reabsorbed = means(kReabsorbed),
+                                .left = means(kLeft),
+                                .upward = means(kUpward),
+                                .downward = means(kDownward),
+                                .escape = {},
+                                .materials = {},
+                                .paths = s.paths};
+  for (const Band& band : s.scene().wavelengths().bands()) m.emission_nm.push_back(band.nm);
+  for (const RatioSums& sums : s.escape) m.escape.push_back(sums.ratio());
+  for (const auto& fluorescence : s.by_material)
+    if (fluorescence && !std::ranges::count(m.shapes, fluorescence->emission_shape()))
+      m.shapes.push_back(fluorescence->emission_shape());
+  for (size_t i = 0; i < s.materials; ++i) {
+    const MaterialDescription& material = s.loaded.description().materials[i];
+    if (!s.scene().material(i)) continue;
+    m.materials.push_back({material.name.empty() ? material.plugin.name : material.name, means(kAbsorbedBy + i)});
+  }
+  if (!s.by_instance) return m;
+  const size_t cells = 1 + kQuantitiesOfInstance * s.emissions;
+  for (size_t first = 0; first < s.by_instance->size(); first += cells) {
+    auto& one = m.instances.emplace_back();
+    one.excited = s.by_instance->at(first).mean(s.paths);
+    for (size_t i = 0; i < s.emissions; ++i) {
+      const size_t at = first + 1 + i * kQuantitiesOfInstance;
+      one.emitted.push_back(s.by_instance->at(at + kEmittedThere).mean(s.seen[i]));
+      one.left.push_back(s.by_instance->at(at + kLeftThere).mean(s.seen[i]));
+    }
+  }
+  return m;
+}
+
+double FluorescenceFluxMeasurement::relative_error() const {
+  double squares = 0;
+  for (const MeanError& v : upward) squares += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
+  return std::sqrt(squares / double(upward.size()));
+}
+
+}  // namespace frond

@@ -1,0 +1,235 @@
+// Fluorescence of scenes, against closed forms and between light paths and camera paths.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "radiometry/fluorescence_flux.h"
+#include "radiometry/flux.h"
+#include "radiometry/horizontal_irradiance.h"
+#include "scene/fluorescence_by_material.h"
+#include "scene/format/parser.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Each comparison allows 4.5 standard errors: a false alarm of 7e-6 each, below 1e-3 for all of this file.
+constexpr double kZ = 4.5;
+
+const std::string kSun =
+    "LightSource \"distant\" \"point3 from\" [-0.5 0 0.8660254] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-E\"\n";
+const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-E\"\n";
+const std::string kLeaf =
+    "MakeNamedMaterial \"leaf\" \"string type\" \"leaf_solved\" \"float fluorescence\" 0.01 \"float tolerance\" 0.05\n";
+const std::string kBlack =
+    "MakeNamedMaterial \"soil\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 0 2500 0]\n";
+
+/// A horizontal square of 2 x 2, a whole period.
+std::string square(const std::string& material, double z) {
+  return fmt::format("NamedMaterial \"{0}\" Shape \"bilinearmesh\" \"point3 P\" [0 0 {1}  2 0 {1}  0 2 {1}  2 2 {1}]\n",
+                     material, z);
+}
+
+/// Squares of a quarter of the period, so that light passes between them.
+std::string gaps(const std::string& material, double z) {
+  return fmt::format(
+      "NamedMaterial \"{0}\" Shape \"bilinearmesh\" \"point3 P\" [0 0 {1}  1.4 0 {1}  0 1.4 {1}  1.4 1.4 {1}]\n",
+      material, z);
+}
+
+const std::array<double, 2> kPeriod{2, 2};
+const std::vector<double> kEmission{685, 740};
+
+class SceneFluorescence : public ::testing::Test {
+ protected:
+  SceneFluorescence() : folder_("scene_fluorescence") {}
+
+  SceneDescription description(const std::string& world, const std::string& options = "") const {
+    const auto path = folder_.write("scene.pbrt", options + "WorldBegin\n" + world);
+    return parse_scene(path, silent_log());
+  }
+  BrfMeasurement brf(const std::string& world, const std::vector<ViewDirection>& views, uint64_t samples,
+                     int threads = 2) const {
+    Session session(silent_log(), {threads, {}, {}});
+    const BrfMeter meter(session, description(world),
+                         {.views = views,
+                          .period = kPeriod,
+                          .wavelengths = fmt::format("bands,fluorescence={}", fmt::join(kEmission, ",")),
+                          .fluorescence = true});
+    RenderPart part = meter.scene().empty_part();
+    session.render(meter.scene(), {0, samples}, part);
+    return meter.read(part.film);
+  }
+  FluorescenceFluxMeasurement flux(const std::string& world, uint64_t paths, int threads = 2) const {
+    Session session(silent_log(), {threads, {}, {}});
+    FluorescenceFluxMeter meter(session, description(world), {.period = kPeriod, .emission_nm = kEmission});
+    meter.trace(paths, session.pool());
+    return meter.read();
+  }
+
+  TestFolder folder_;
+};
+
+/// Sum over the wavelengths of excitation of f(wo, wi) E(excitation) excitation / emission.
+TEST_F(SceneFluorescence, ALeafInTheSunHasTheRadianceOfItsOperator) {
+  Session session(silent_log(), {2, {}, {}});
+  const LoadedScene loaded = session.load(
+      description(kSun + kLeaf + square("leaf", 0), "Option \"string wavelengths\" \"bands,fluorescence=685\"\n"));
+  std::vector<const Material*> materials;
+  for (size_t i = 0; i < loaded.description().materials.size(); ++i) materials.push_back(loaded.scene().material(i));
+  const auto by_material =
+      fluorescence_by_material(materials, {loaded.scene().wavelengths(), session.pool(), silent_log(), {}});
+  const auto fluorescence = *std::ranges::find_if(by_material, [](const auto& f) { return f != nullptr; });
+  const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm);
+  const Vec3 wi{-0.5f, 0, 0.8660254f};
+  const std::vector<ViewDirection> views{{0, 0}, {-60, 0}, {45, 90}};
+  const BrfMeasurement measured = brf(kSun + kLeaf + square("leaf", 0), views, 256);
+  RandomStream random(1);
+  for (size_t view = 0; view < views.size(); ++view)
+    for (size_t band = 0; band < kEmission.size(); ++band) {
+      // The azimuth is that of the side away from the sun.
+      const double zenith = views[view].zenith_deg * std::numbers::pi / 180,
+                   azimuth = views[view].azimuth_deg * std::numbers::pi / 180;
+      const Vec3 wo{float(std::sin(zenith) * std::cos(azimuth)), float(std::sin(zenith) * std::sin(azimuth)),
+                    float(std::cos(zenith))};
+      double sum = 0;
+      for (double nm = kExcitation_nm.min + 0.25; nm < kExcitation_nm.max; nm += 0.5)
+        sum += 0.5 * fluorescence->f(wo, wi, kEmission[band], nm, random) * double(irradiance->at(float(nm))) * nm /
+               kEmission[band];
+      const MeanError& v = measured.at(view, band);
+      EXPECT_NEAR(v.mean / sum, 1, kZ * v.standard_error / sum + 1e-4) << view << " " << band;
+      EXPECT_LT(v.standard_error / sum, 0.01);
+    }
+}
+
+/// Light paths count what camera paths gather: under a sun, under a sky, and with light that leaves scatter and absorb.
+TEST_F(SceneFluorescence, LightPathsAndCameraPathsAgree) {
+  const std::string leaves = kLeaf + kBlack + gaps("leaf", 1) + square("leaf", 0.6) + square("soil", 0);
+  for (const std::string& light : {kSun, kSky, kSun + kSky}) {
+    // Gauss's rule of four points in the squared sine, by eight azimuths: the integral of L cos over the hemisphere.
+    const std::array<std::pair<double, double>, 4> nodes{{{0.0694318442, 0.1739274226},
+                                                          {0.3300094782, 0.3260725774},
+                                                          {0.6699905218, 0.3260725774},
+                                                          {0.9305681558, 0.1739274226}}};
+    std::vector<ViewDirection> views;
+    std::vector<double> weights;
+    for (const auto& [square_of_sine, weight] : nodes)
+      for (int azimuth = 0; azimuth < 8; ++azimuth) {
+        views.push_back({std::asin(std::sqrt(square_of_sine)) * 180 / std::numbers::pi, 45.0 * azimuth + 10});
+        weights.push_back(weight * std::numbers::pi / 8);
+      }
+    const BrfMeasurement seen = brf(light + leaves, views, 32);
+    const FluorescenceFluxMeasurement counted = flux(light + leaves, 100'000);
+    for (size_t band = 0; band < kEmission.size(); ++band) {
+      double photons = 0, variance = 0;
+      for (size_t view = 0; view < views.size(); ++view) {
+        const double factor = weights[view] * photons_per_energy(kEmission[band]) / counted.incident;
+        photons += factor * seen.at(view, band).mean;
+        variance += std::pow(factor * seen.at(view, band).standard_error, 2);
+      }
+      const MeanError& up = counted.upward[band];
+      // The rule of 32 directions is accurate to 0.3 %.
+      EXPECT_NEAR(photons / up.mean, 1,
+                  kZ * std::sqrt(variance + up.standard_error * up.standard_error) / up.mean + 3e-3)
+          << light << band;
+      EXPECT_LT(std::sqrt(variance + up.standard_error * up.standard_error) / up.mean, 0.01);
+    }
+  }
+}
+
+TEST_F(SceneFluorescence, PhotonsAreConserved) {
+  const FluorescenceFluxMeasurement m =
+      flux(kSun + kSky + kLeaf + kBlack + gaps("leaf", 1) + square("leaf", 0.6) + square("soil", 0), 200'000);
+  EXPECT_GT(m.excited.mean, 0.5);
+  EXPECT_LT(m.excited.mean, 1);
+  for (size_t band = 0; band < kEmission.size(); ++band) {
+    EXPECT_NEAR((m.reabsorbed[band].mean + m.left[band].mean) / m.emitted[band].mean, 1, 1e-4);
+    double ends = m.upward[band].mean + m.downward[band].mean, error = m.upward[band].standard_error;
+    for (const auto& material : m.materials) {
+      ends += material.absorbed[band].mean;
+      error += material.absorbed[band].standard_error;
+    }
+    EXPECT_NEAR(ends / m.left[band].mean, 1, kZ * error / m.left[band].mean + 1e-3);
+    EXPECT_LT(error / m.left[band].mean, 0.01);
+    EXPECT_NEAR(m.escape[band].mean, m.upward[band].mean / m.left[band].mean, 1e-6);
+  }
+  // Red light is reabsorbed between the leaves, far-red light is not.
+  EXPECT_LT(m.escape[0].mean, m.escape[1].mean);
+}
+
+TEST_F(SceneFluorescence, ResultsDoNotDependOnThreads) {
+  const std::string world = kSky + kLeaf + gaps("leaf", 1) + gaps("leaf", 0.6);
+  EXPECT_EQ(brf(world, {{0, 0}}, 2, 1).at(0, 0).mean, brf(world, {{0, 0}}, 2, 3).at(0, 0).mean);
+  EXPECT_EQ(flux(world, 3000, 1).upward[0].mean, flux(world, 3000, 3).upward[0].mean);
+}
+
+/// Light that only excites, without any at the wavelengths of emission.
+TEST_F(SceneFluorescence, ABlueLampExcitesRedLight) {
+  const std::string lamp =
+      "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"spectrum L\" [300 0 449 0 450 1 460 1 "
+      "461 "
+      "0 2500 0]\n";
+  const BrfMeasurement m = brf(lamp + kLeaf + square("leaf", 0), {{0, 0}}, 16);
+  EXPECT_GT(m.at(0, 1).mean, 0);
+  EXPECT_LT(m.at(0, 1).standard_error, 0.03 * m.at(0, 1).mean);
+}
+
+TEST_F(SceneFluorescence, BandsOfBothKindsStandBesideEachOther) {
+  const auto means = [&](const std::string& wavelengths) {
+    Session session(silent_log(), {2, {}, {}});
+    const LoadedScene loaded = session.load(description(
+        kSky + kLeaf + "AttributeBegin Scale 10 10 1\n" + square("leaf", 0) + "AttributeEnd\n",
+        "Option \"string wavelengths\" \"" + wavelengths +
+            "\"\nLookAt 10 10 5  10 10 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n"
+            "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\n"));
+    RenderPart part = loaded.empty_part();
+    session.render(loaded, {0, 128}, part);
+    std::vector<MeanError> result;
+    for (size_t band = 0; band < part.film.bands(); ++band) {
+      double sum = 0, squares = 0;
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+          const double value = part.film.band_mean(x, y, band).mean;
+          sum += value, squares += value * value;
+        }
+      result.push_back({sum / 64, std::sqrt(std::max(0.0, squares / 64 - sum * sum / 64 / 64) / 63)});
+    }
+    return result;
+  };
+  const auto both = means("bands,wavelengths=550,740,fluorescence=740,685,760"),
+             reflected = means("bands,wavelengths=550,740"), emitted = means("bands,fluorescence=740,685,760");
+  ASSERT_EQ(both.size(), 5u);
+  for (size_t band = 0; band < 5; ++band) {
+    const MeanError& alone = band < 2 ? reflected[band] : emitted[band - 2];
+    EXPECT_NEAR(both[band].mean / alone.mean, 1,
+                kZ * std::hypot(both[band].standard_error, alone.standard_error) / alone.mean + 1e-3)
+        << band;
+    EXPECT_LT(both[band].standard_error, 0.02 * both[band].mean);
+  }
+}
+
+TEST_F(SceneFluorescence, ErrorsSayWhatToDo) {
+  const auto loaded = [&](const std::string& world, const std::string& options) {
+    return error_of([&] { Session(silent_log(), {1, {}, {}}).load(description(world, options)); });
+  };
+  const std::string bands = "Option \"string wavelengths\" \"bands,fluorescence=740\"\n";
+  EXPECT_THAT(loaded(kSun + kBlack + square("soil", 0), bands), HasSubstr("a quantum yield, as in"));
+  EXPECT_THAT(loaded(kSun + kLeaf + square("leaf", 0), bands + "Integrator \"volpath\"\n"),
+              HasSubstr("integrator \"volpath\" computes no bands of fluorescence: \"path\" does"));
+  EXPECT_THAT(loaded(kSun, "Option \"string wavelengths\" \"bands,fluorescence=900\"\n"), HasSubstr("640"));
+  EXPECT_THAT(loaded(kSun, "Option \"string wavelengths\" \"bands,fluorescence=740,740\"\n"),
+              HasSubstr("two bands at 740 nm"));
+  Session session(silent_log(), {1, {}, {}});
+  EXPECT_THAT(error_of([&] {
+                FluxMeter(session, description(kSun + kLeaf + square("leaf", 0)),
+                          {.wavelengths = "bands,fluorescence=740"});
+              }),
+              HasSubstr("brf and flux measure them with --fluorescence"));
+}
+
+}  // namespace
+}  // namespace frond
