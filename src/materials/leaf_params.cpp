@@ -245,7 +245,7 @@ void LeafParams::reject_wall_textures(const Params& p) const {
 }
 
 void LeafParams::refuse_varying_fluorescence() const {
-  if (!is_constant())
+  if (tissue_.fluorescence > 0 && !is_constant())
     fail(where_, "the fluorescence of a leaf with textures is not computed: give its parameters as numbers");
 }
 

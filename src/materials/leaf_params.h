@@ -82,7 +82,7 @@ class LeafParams {
   /// tissue. The cuticle affects the surface alone.
   void reject_wall_textures(const Params& p) const;
 
-  /// Throws InputError if the leaf varies over its surface: fluorescence is computed for one tissue.
+  /// Throws InputError if a leaf with a quantum yield varies over its surface: fluorescence is computed for one tissue.
   void refuse_varying_fluorescence() const;
 
   /// Throws InputError if the optical constants or a pigment's data do not cover the wavelengths.

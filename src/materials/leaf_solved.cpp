@@ -82,6 +82,7 @@ class LeafSolved final : public Material, public FluorescentMaterial {
     if (file_.is_given()) return only_matrix_fluorescence(leaf_, preparation.log);
     if (auto given = matrix_fluorescence(leaf_, preparation.log)) return given;
     leaf_.refuse_varying_fluorescence();
+    if (leaf_.tissue().fluorescence == 0) return std::make_shared<const MatrixFluorescence>(nullptr);
     const auto make = [&] { return leaf::FluorescenceTable(leaf_.tissue(), preparation.pool); };
     const std::string key = "fluorescence table " + describe(leaf_.tissue());
     return std::make_shared<const SolvedFluorescence>(leaf_, preparation.share<leaf::FluorescenceTable>(key, make));

@@ -29,6 +29,11 @@ enum Quantity : size_t { kEmitted, kReabsorbed, kLeft, kUpward, kDownward, kAbso
 /// Quantities of an instance: the excitation, then these at each wavelength of emission.
 enum OfInstance : size_t { kEmittedThere, kLeftThere, kQuantitiesOfInstance };
 
+/// The mean of a quantity, which is NaN where only the matrices of a leaf are known.
+MeanError mean_of(const Moment& moment, uint64_t paths) {
+  return std::isnan(moment.sum) ? kUnknown : moment.mean(paths);
+}
+
 /// Returns the photons of a spectrum (W m^-2 nm^-1) over the wavelengths of excitation, umol m^-2 s^-1.
 double photons_of(const Spectrum& irradiance) {
   const std::vector<double> nm = points_nm(irradiance, kExcitation_nm);
@@ -260,10 +265,10 @@ class FluorescenceFluxMeter::Block {
 
   void add_instance(uint64_t instance, double excited_there, const SampledSpectrum& emitted,
                     const SampledSpectrum& left) {
-    of_instances_.push_back({instance, 0, excited_there});
+    if (!std::isnan(excited_there)) of_instances_.push_back({instance, 0, excited_there});
     for (int f = 0; f < emission_.count; ++f) {
       const size_t first = 1 + emission_.band[size_t(f)] * kQuantitiesOfInstance;
-      of_instances_.push_back({instance, first + kEmittedThere, double(emitted[f])});
+      if (!std::isnan(emitted[f])) of_instances_.push_back({instance, first + kEmittedThere, double(emitted[f])});
       of_instances_.push_back({instance, first + kLeftThere, double(left[f])});
     }
   }
@@ -381,13 +386,14 @@ FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {
   const State& s = *state_;
   const auto means = [&](size_t quantity) {
     std::vector<MeanError> result;
-    for (size_t i = 0; i < s.emissions; ++i) result.push_back(s.moments[quantity * s.emissions + i].mean(s.seen[i]));
+    for (size_t i = 0; i < s.emissions; ++i)
+      result.push_back(mean_of(s.moments[quantity * s.emissions + i], s.seen[i]));
     return result;
   };
   FluorescenceFluxMeasurement m{.emission_nm = {},
                                 .shapes = {},
                                 .incident = s.incident,
-                                .excited = s.excited.mean(s.paths),
+                                .excited = mean_of(s.excited, s.paths),
                                 .emitted = means(kEmitted),
                                 .reabsorbed = means(kReabsorbed),
                                 .left = means(kLeft),
@@ -408,12 +414,13 @@ FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {
   }
   if (!s.by_instance) return m;
   const size_t cells = 1 + kQuantitiesOfInstance * s.emissions;
+  const bool is_known = !std::isnan(m.excited.mean);
   for (size_t first = 0; first < s.by_instance->size(); first += cells) {
     auto& one = m.instances.emplace_back();
-    one.excited = s.by_instance->at(first).mean(s.paths);
+    one.excited = is_known ? s.by_instance->at(first).mean(s.paths) : kUnknown;
     for (size_t i = 0; i < s.emissions; ++i) {
       const size_t at = first + 1 + i * kQuantitiesOfInstance;
-      one.emitted.push_back(s.by_instance->at(at + kEmittedThere).mean(s.seen[i]));
+      one.emitted.push_back(is_known ? s.by_instance->at(at + kEmittedThere).mean(s.seen[i]) : kUnknown);
       one.left.push_back(s.by_instance->at(at + kLeftThere).mean(s.seen[i]));
     }
   }

@@ -17,7 +17,7 @@ struct FluorescenceFluxRequest {
 };
 
 /// Numbers of photons per photon that enters through the target from 400 to 750 nm. Those of fluorescence are
-/// densities, 1/nm, by wavelength of emission.
+/// densities, 1/nm, by wavelength of emission. What happens inside is unknown, NaN, if a leaf has only matrices.
 struct FluorescenceFluxMeasurement {
   struct OfMaterial {
     std::string name;

@@ -25,6 +25,10 @@ const std::string kSun =
 const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-E\"\n";
 const std::string kLeaf =
     "MakeNamedMaterial \"leaf\" \"string type\" \"leaf_solved\" \"float fluorescence\" 0.01 \"float tolerance\" 0.05\n";
+/// A Lambertian leaf by its shares and matrices, quick to load.
+const std::string kReplayed =
+    "MakeNamedMaterial \"leaf\" \"string type\" \"leaf_lambert\" \"string tablefile\" \"shares.csv\" "
+    "\"string fluorescencematrices\" \"matrices.csv\"\n";
 const std::string kBlack =
     "MakeNamedMaterial \"soil\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 0 2500 0]\n";
 
@@ -46,7 +50,29 @@ const std::vector<double> kEmission{685, 740};
 
 class SceneFluorescence : public ::testing::Test {
  protected:
-  SceneFluorescence() : folder_("scene_fluorescence") {}
+  SceneFluorescence() : folder_("scene_fluorescence") {
+    std::string shares = "theta_deg,wavelength_nm,Rs,Rd,T\n";
+    for (const auto& [nm, r, t] : {std::array{400.0, 0.05, 0.01},
+                                   {500.0, 0.05, 0.02},
+                                   {550.0, 0.12, 0.1},
+                                   {680.0, 0.05, 0.02},
+                                   {720.0, 0.3, 0.3},
+                                   {760.0, 0.47, 0.45},
+                                   {850.0, 0.48, 0.47}})
+      shares += fmt::format("8,{},0,{},{}\n", nm, r, t);
+    folder_.write("shares.csv", shares);
+    std::string matrices = "excitation_nm,emission_nm,Mb,Mf\n";
+    for (double e = 400; e <= 750; e += 50)
+      for (double f = 640; f <= 850; f += 10)
+        matrices += fmt::format("{},{},{:.6g},{:.6g}\n", e, f, lit(e, f), opposite(e, f));
+    folder_.write("matrices.csv", matrices);
+  }
+
+  /// Photons per nm that leave the lit side and the other side; linear between the wavelengths of the file.
+  static double lit(double excitation_nm, double emission_nm) {
+    return 1e-7 * (800 - excitation_nm) * (1 + (emission_nm - 640) / 100);
+  }
+  static double opposite(double excitation_nm, double emission_nm) { return 0.5 * lit(excitation_nm, emission_nm); }
 
   SceneDescription description(const std::string& world, const std::string& options = "") const {
     const auto path = folder_.write("scene.pbrt", options + "WorldBegin\n" + world);
@@ -73,6 +99,30 @@ class SceneFluorescence : public ::testing::Test {
 
   TestFolder folder_;
 };
+
+/// Matrices times irradiance over pi, on either side of a leaf.
+TEST_F(SceneFluorescence, ALambertianLeafHasTheRadianceOfItsMatrices) {
+  Session session(silent_log(), {2, {}, {}});
+  for (const std::string& light : {kSun, kSky}) {
+    const LoadedScene loaded = session.load(description(light + kReplayed + square("leaf", 0),
+                                                        "Option \"string wavelengths\" \"bands,fluorescence=685\"\n"));
+    const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm);
+    const std::vector<ViewDirection> views{{0, 0}, {-60, 0}, {45, 90}};
+    const BrfMeasurement measured = brf(light + kReplayed + square("leaf", 0), views, 64);
+    for (size_t view = 0; view < views.size(); ++view)
+      for (size_t band = 0; band < kEmission.size(); ++band) {
+        // The environment lights the lower side as well.
+        const double below = light == kSky ? opposite(1, 1) / lit(1, 1) : 0;
+        double sum = 0;
+        for (double nm = kExcitation_nm.min + 0.5; nm < kExcitation_nm.max; ++nm)
+          sum += (1 + below) * lit(nm, kEmission[band]) * double(irradiance->at(float(nm))) * nm / kEmission[band] *
+                 std::numbers::inv_pi;
+        const MeanError& v = measured.at(view, band);
+        EXPECT_NEAR(v.mean / sum, 1, kZ * v.standard_error / sum + 3e-4) << light << view << " " << band;
+        EXPECT_LT(v.standard_error / sum, 0.01);
+      }
+  }
+}
 
 /// Sum over the wavelengths of excitation of f(wo, wi) E(excitation) excitation / emission.
 TEST_F(SceneFluorescence, ALeafInTheSunHasTheRadianceOfItsOperator) {
@@ -108,7 +158,7 @@ TEST_F(SceneFluorescence, ALeafInTheSunHasTheRadianceOfItsOperator) {
 
 /// Light paths count what camera paths gather: under a sun, under a sky, and with light that leaves scatter and absorb.
 TEST_F(SceneFluorescence, LightPathsAndCameraPathsAgree) {
-  const std::string leaves = kLeaf + kBlack + gaps("leaf", 1) + square("leaf", 0.6) + square("soil", 0);
+  const std::string leaves = kReplayed + kBlack + gaps("leaf", 1) + square("leaf", 0.6) + square("soil", 0);
   for (const std::string& light : {kSun, kSky, kSun + kSky}) {
     // Gauss's rule of four points in the squared sine, by eight azimuths: the integral of L cos over the hemisphere.
     const std::array<std::pair<double, double>, 4> nodes{{{0.0694318442, 0.1739274226},
@@ -162,7 +212,7 @@ TEST_F(SceneFluorescence, PhotonsAreConserved) {
 }
 
 TEST_F(SceneFluorescence, ResultsDoNotDependOnThreads) {
-  const std::string world = kSky + kLeaf + gaps("leaf", 1) + gaps("leaf", 0.6);
+  const std::string world = kSky + kReplayed + gaps("leaf", 1) + gaps("leaf", 0.6);
   EXPECT_EQ(brf(world, {{0, 0}}, 2, 1).at(0, 0).mean, brf(world, {{0, 0}}, 2, 3).at(0, 0).mean);
   EXPECT_EQ(flux(world, 3000, 1).upward[0].mean, flux(world, 3000, 3).upward[0].mean);
 }
@@ -173,7 +223,7 @@ TEST_F(SceneFluorescence, ABlueLampExcitesRedLight) {
       "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"spectrum L\" [300 0 449 0 450 1 460 1 "
       "461 "
       "0 2500 0]\n";
-  const BrfMeasurement m = brf(lamp + kLeaf + square("leaf", 0), {{0, 0}}, 16);
+  const BrfMeasurement m = brf(lamp + kReplayed + square("leaf", 0), {{0, 0}}, 16);
   EXPECT_GT(m.at(0, 1).mean, 0);
   EXPECT_LT(m.at(0, 1).standard_error, 0.03 * m.at(0, 1).mean);
 }
@@ -182,7 +232,7 @@ TEST_F(SceneFluorescence, BandsOfBothKindsStandBesideEachOther) {
   const auto means = [&](const std::string& wavelengths) {
     Session session(silent_log(), {2, {}, {}});
     const LoadedScene loaded = session.load(description(
-        kSky + kLeaf + "AttributeBegin Scale 10 10 1\n" + square("leaf", 0) + "AttributeEnd\n",
+        kSky + kReplayed + "AttributeBegin Scale 10 10 1\n" + square("leaf", 0) + "AttributeEnd\n",
         "Option \"string wavelengths\" \"" + wavelengths +
             "\"\nLookAt 10 10 5  10 10 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n"
             "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\n"));
@@ -218,14 +268,14 @@ TEST_F(SceneFluorescence, ErrorsSayWhatToDo) {
   };
   const std::string bands = "Option \"string wavelengths\" \"bands,fluorescence=740\"\n";
   EXPECT_THAT(loaded(kSun + kBlack + square("soil", 0), bands), HasSubstr("a quantum yield, as in"));
-  EXPECT_THAT(loaded(kSun + kLeaf + square("leaf", 0), bands + "Integrator \"volpath\"\n"),
+  EXPECT_THAT(loaded(kSun + kReplayed + square("leaf", 0), bands + "Integrator \"volpath\"\n"),
               HasSubstr("integrator \"volpath\" computes no bands of fluorescence: \"path\" does"));
   EXPECT_THAT(loaded(kSun, "Option \"string wavelengths\" \"bands,fluorescence=900\"\n"), HasSubstr("640"));
   EXPECT_THAT(loaded(kSun, "Option \"string wavelengths\" \"bands,fluorescence=740,740\"\n"),
               HasSubstr("two bands at 740 nm"));
   Session session(silent_log(), {1, {}, {}});
   EXPECT_THAT(error_of([&] {
-                FluxMeter(session, description(kSun + kLeaf + square("leaf", 0)),
+                FluxMeter(session, description(kSun + kReplayed + square("leaf", 0)),
                           {.wavelengths = "bands,fluorescence=740"});
               }),
               HasSubstr("brf and flux measure them with --fluorescence"));

@@ -221,8 +221,8 @@ Result fluorescence_flux_result(const JobRun& run) {
                           {"target_area", area_of(meter->target())}},
                 .notes = notes_of(run, m, has_units)};
   result.text = fmt::format(
-      "fluorescence, nmol/(m2 s nm); incident light from 400 to 750 nm {:.5g} µmol/(m2 s), of which {:.4f} excites\n{}",
-      m.incident, m.excited.mean, balance_text(m));
+      "fluorescence, nmol/(m2 s nm); incident light from 400 to 750 nm {:.5g} µmol/(m2 s){}\n{}", m.incident,
+      std::isnan(m.excited.mean) ? "" : fmt::format(", of which {:.4f} excites", m.excited.mean), balance_text(m));
   if (!is_by_instance) return result;
   result.tables.insert(result.tables.begin(), instance_table(m, meter->loaded(), area_of(meter->target())));
   result.csv_tables = 2;
