@@ -94,14 +94,19 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 
     With by="instance" also the table of the instances, one row each: "instance", "area", for PAR "par_umol_m2_s" (absorbed photons
     by leaf area), and for each wavelength or band "absorbed_550", "absorbed_nir", ... (shares of the incident light), each with a
-    column "_se" (standard error).
+    column "_se" (standard error). With by="mesh", "part", "triangle" or "material" its rows are these.
 
     With fluorescence=True the first table is the balance of photons, and of the instances "excited_umol_m2_s", "emitted_740" and
-    "left_740" (nmol/(m2 s nm) by leaf area)."""
-    result = FUNCTIONS["flux"](scene, wavelengths, by=by, **options)
-    tables = result.tables
-    shares = tables["fluorescence" if options.get("fluorescence") else "flux"]
-    return shares if by is None else (shares, tables["instances"])
+    "left_740" (nmol/(m2 s nm) by leaf area).
+
+    With bands="par,nir,shortwave" a dictionary of tables: "energy", one row for each quantity and band, with W/m2 and umol/(m2 s);
+    "leaves", sunlit and shaded leaf area with its light, if the scene has leaves; with by also "instances", "meshes", "parts",
+    "triangles" or "materials"."""
+    tables = FUNCTIONS["flux"](scene, wavelengths, by=by, **options).tables
+    if options.get("bands") is not None:
+        return tables
+    first = "fluorescence" if options.get("fluorescence") else "flux"
+    return tables[first] if by is None else (tables[first], next(tables[name] for name in tables if name != first))
 
 
 @_with_keywords_of("goniophotometer")

@@ -20,7 +20,7 @@ TEXTS = {
     "HOST:PORT": "127.0.0.1:9", "FIRST:END": (0, 2), "MATERIAL": "leaf_lambert", "MATERIAL|SCENE": "leaf_lambert", "FILE|FOLDER": "out.csv",
     "R,G,B": (0.01, 0.01, 0.02), "NAME": "leaf", "CSV": {"nm": [500, 510], "R": [0.1, 0.2]}, "LEAF": "a", "NAME=NUMBER": {"thickness": 1e-4},
     "THETAxPHI": (4, 6), "PLUGIN": "abm", "SPECTRUM": "solar-am1.5-direct", "NAME=LEAST:MOST": {"chlorophylla": (2, 5)},
-    "UNIT": "cm", "AXIS": "z"}
+    "UNIT": "cm", "AXIS": "z", "BANDS": "par,blue=400:500"}
 #: Values for parameters that have no type, or whose type is not enough.
 OWN = {"display": "sRGB", "view": "Raw", "color-space": "linear sRGB", "scale": 0.5, "max-rms": "2%", "images": ["a.exr", "b.exr", "c.exr", "d.exr"],
        "parts": ["a.part", "b.part"], "crop": (0, 0.5, 0, 1), "lanes": [1, 2], "heights": (0, 1), "depths": (1, 2), "model": "plant.obj",

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <list>
 
+#include "jobs/support/flux_energy.h"
 #include "jobs/support/flux_tables.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
@@ -15,22 +17,33 @@
 #include "radiometry/instance_errors.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"
-#include "system/atomic_file.h"
-#include "system/file_uses.h"
 
 namespace frond {
 
-// `frond flux`: light budget of a scene: reflected, transmitted and absorbed shares, by material or by instance
-// (docs/radiometry.md).
+// `frond flux`: light budget of a scene: reflected, transmitted and absorbed light, as shares or by energy and photons,
+// by material or by organ (docs/radiometry.md).
 
 namespace {
 
 using enum ArgumentKind;
 
-constexpr std::string_view kBy[] = {"instance"};
 constexpr JobParam kParams[] = {
     kSceneParam,
     kRadiometryWavelengthsParam,
+    JobParam(
+        "bands", text,
+        "Measure energy and photons of these bands, direct and diffuse light apart, and sunlit and shaded leaves: "
+        "par (400 to 700 nm), nir (700 to 1100 nm), shortwave (300 to 2500 nm), all: these three, or NAME=FIRST:LAST "
+        "in nm.",
+        {.type = "BANDS", .decides = true, .excludes = "wavelengths"}),
+    JobParam(
+        "optics-range", numbers,
+        "Wavelengths for which the optics of all surfaces are known: light beyond them meets the optics at the ends. "
+        "By default 360 to 2500 nm if the scene has leaf models, else all wavelengths of the bands.",
+        {.type = "FIRST,LAST", .unit = "nm", .values = 2, .decides = true, .needs = "bands"}),
+    JobParam("material", texts,
+             "Material whose surfaces count as leaves, by its name in the scene; by default all leaf models.",
+             {.type = "NAME", .decides = true, .needs = "bands"}),
     kTargetParam,
     kPeriodParam,
     JobParam("paths", count, "Number of light paths; at least 32 for each wavelength are traced.",
@@ -39,15 +52,17 @@ constexpr JobParam kParams[] = {
         "Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the "
         "standard errors of all reflected and absorbed shares is below this; --paths is then not used."),
     kTimeLimitParam,
+    JobParam("by", text,
+             "Measure the absorption of each instance of an object, mesh, connected part of a mesh, triangle or "
+             "material, one row each; the other tables are then in files beside that of --csv: leaves-flux.csv beside "
+             "leaves.csv.",
+             {.choices = kOrganKinds, .decides = true}),
     JobParam(
-        "by", text,
-        "Measure the absorption of each instance of an object, one row each; the table of shares is then in a file "
-        "beside that of --csv: leaves-flux.csv beside leaves.csv.",
-        {.choices = kBy, .decides = true}),
-    JobParam("instance-error", real,
-             "Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR "
-             "photons that each absorbs, or without PAR of the light in the worst band; --paths is then not used.",
-             {.range = {kAboveZero.min, 1}, .relative = true, .needs = "by"}),
+        "instance-error", real,
+        "Relative standard error (0.05 or 5%): stop when the median over the instances, or other rows of --by, "
+        "is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; --paths "
+        "is then not used.",
+        {.range = {kAboveZero.min, 1}, .relative = true, .needs = "by"}),
     JobParam("irradiance", text,
              "Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name "
              "of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the "
@@ -63,6 +78,10 @@ constexpr JobParam kParams[] = {
     kStrictParam,
     kCsvParam,
     kJsonParam,
+    JobParam("ply", text,
+             "PLY file to write: meshes whose faces have the light that each row of --by absorbs for each unit of its "
+             "area, as properties, and as colours in the first band.",
+             {.type = "FILE", .path = PathUse::write, .needs = "bands"}),
     kCheckpointParam,
     kResumeParam,
 };
@@ -86,6 +105,14 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
 /// Whether the paths are doubled until an error is small enough, and are not a fixed number.
 bool has_error_limit(const Arguments& args) { return args.given("rms") || args.given("instance-error"); }
 
+/// Returns the kind that --by names.
+OrganKind organ_kind(const Arguments& args) {
+  return OrganKind(std::ranges::find(kOrganKinds, args.text("by")) - std::begin(kOrganKinds));
+}
+
+/// Returns the name of the rows of --by in messages.
+std::string_view organs_name(const JobRun& run) { return kOrganPlurals[size_t(organ_kind(run.args))]; }
+
 /// Returns the largest of the errors relative to their limits, --rms and --instance-error: at most 1 when both are
 /// met. Throws InputError if the instances have absorbed nothing: their error would never be met.
 double largest_relative_error(const JobRun& run, const FluxMeasurement& measurement,
@@ -96,8 +123,8 @@ double largest_relative_error(const JobRun& run, const FluxMeasurement& measurem
   const InstanceErrors errors = instance_errors(measurement, photons);
   if (errors.known == 0)
     fail(scene_file(run.args),
-         "{}: the instances absorb no light, of {} paths: there is no error to reach; give a smaller {} around them",
-         run.args.spelled("instance-error"), measurement.paths, run.args.spelled("target"));
+         "{}: the {} absorb no light, of {} paths: there is no error to reach; give a smaller {} around them",
+         run.args.spelled("instance-error"), organs_name(run), measurement.paths, run.args.spelled("target"));
   return std::max(largest, errors.median / run.args.real("instance-error"));
 }
 
@@ -222,16 +249,17 @@ void warn_of_unmet(const JobRun& run, const FluxMeasurement& measurement) {
                                more_paths_advice(run.args), run.args.spelled("target")));
 }
 
-/// Warns of instances without an error: in no band a path was absorbed.
-void warn_of_unmet_instances(const JobRun& run, const FluxMeasurement& measurement) {
+/// Warns of organs without an error: in no band a path was absorbed.
+void warn_of_unmet_organs(const JobRun& run, const FluxMeasurement& measurement) {
   const size_t bands = measurement.bands.size(), count = measurement.areas.size();
   size_t unmet = 0;
   for (size_t i = 0; i < count; ++i)
-    unmet += std::ranges::all_of(std::span(measurement.by_instance).subspan(i * bands, bands),
+    unmet += measurement.areas[i] > 0 &&
+             std::ranges::all_of(std::span(measurement.by_organ).subspan(i * bands, bands),
                                  [](const MeanError& share) { return std::isnan(share.standard_error); });
   if (unmet > 0)
-    run.log().warn({}, fmt::format("{} of {} instances met no light path, or absorb none: their errors are unknown; {}",
-                                   unmet, count, more_paths_advice(run.args)));
+    run.log().warn({}, fmt::format("{} of {} {} met no light path, or absorb none: their errors are unknown; {}", unmet,
+                                   count, organs_name(run), more_paths_advice(run.args)));
 }
 
 /// Relative error as text.
@@ -247,9 +275,8 @@ void report_instance_errors(const JobRun& run, const FluxMeasurement& measuremen
   constexpr double kTooLarge = 0.1, kProposed = 0.05;
   if (errors.known == 0) return;
   const std::string option = run.args.spelled("instance-error");
-  const std::string text =
-      fmt::format("relative standard error of the {} that single instances absorb: median {}, largest {}", errors.light,
-                  percent(errors.median), percent(errors.largest));
+  const std::string text = fmt::format("relative standard error of the {} that single {} absorb: median {}, largest {}",
+                                       errors.light, organs_name(run), percent(errors.median), percent(errors.largest));
   const double asked = run.args.given("instance-error") ? run.args.real("instance-error") : kTooLarge;
   if (errors.median <= asked) return run.log().info(text);
   if (run.args.given("instance-error"))
@@ -267,19 +294,42 @@ void warn_of_end(const JobRun& run, const FluxMeasurement& measurement) {
     warn_of_time_limit(run, measurement.paths, measurement.error());
 }
 
-/// Name of the table of shares, which is written beside the table of instances.
-constexpr const char* kShares = "flux";
+/// Warns that energies have no unit, unless the irradiance is in W/(m2 nm).
+void warn_of_no_unit(const JobRun& run, const SceneDescription& description) {
+  const std::string name = run.args.text("irradiance");
+  const bool is_of_scene = name.empty() || name == kOfScene;
+  if (is_of_scene ? !light_without_unit(description) : is_spectrum_file(name, name) || name.starts_with("solar-"))
+    return;
+  run.log().warn(
+      {},
+      fmt::format("{} has no unit: columns in W/m2 and umol/(m2 s) are in units of the scene, shares and "
+                  "ratios are right; LightSource \"sky\", or {} with a spectrum in W/(m2 nm), has one",
+                  is_of_scene ? "the light of the scene" : "the irradiance " + name, run.args.spelled("irradiance")));
+}
 
-/// Returns the text for a terminal: the shares, and the instances unless a file has them. With --quiet only the
-/// instances, as CSV: requested data.
-void add_instances(const JobRun& run, const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons,
-                   Result& result) {
-  const Table& instances = *result.tables.insert(result.tables.begin(), instance_table(measurement, photons));
-  result.csv_tables = 2;
-  if (run.args.given("csv") || run.args.given("json")) return;
-  const bool is_quiet = run.args.flag("quiet");
-  result.text = is_quiet ? to_csv(instances, {}) : result.text + '\n' + to_text(instances);
+/// Adds the table of organs before the others. In text for a terminal it follows them, unless a file has it. With
+/// --quiet the text is the organs alone, as CSV: requested data.
+void add_organs(const JobRun& run, Table organs, Result& result) {
+  const Table& first = *result.tables.insert(result.tables.begin(), std::move(organs));
+  if (run.args.given("csv") || run.args.given("json") || run.args.given("ply")) return;
+  result.text = run.args.flag("quiet") ? to_csv(first, {}) : result.text + '\n' + to_text(first);
   result.is_requested = true;
+}
+
+/// Returns the request, of which set_bands completes the bands of --bands. Throws InputError for --ply without --by.
+FluxRequest request_of(const JobRun& run, const SpectrumPtr& irradiance) {
+  const bool by_energy = run.args.given("bands");
+  if (run.args.given("ply") && !run.args.given("by"))
+    fail({}, "{} needs {}, whose rows the faces belong to", run.args.spelled("ply"), run.args.spelled("by"));
+  FluxRequest request{.target = target_of(run.args),
+                      .period = period_of(run.args),
+                      .wavelengths = by_energy ? std::string() : wavelengths_text(run.args),
+                      .irradiance = irradiance,
+                      .irradiance_name = run.args.text("irradiance"),
+                      .energy = by_energy,
+                      .leaves = run.args.texts("material")};
+  if (run.args.given("by")) request.organs = organ_kind(run.args);
+  return request;
 }
 
 /// The job: traces light paths until the requested number or error is reached, with checkpoints.
@@ -288,25 +338,19 @@ Result flux(const JobRun& run) {
   std::optional<ResumeFile> resume_file;
   if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
   const SpectrumPtr irradiance = named_irradiance(run);
-  const bool is_by_instance = run.args.text("by") == "instance";
-  if (!is_by_instance) warn_if_nothing_is_kept(run);
-  std::optional<PlannedOutput> beside;
-  if (const std::string csv = run.args.text("csv"); is_by_instance && !csv.empty() && csv != "-") {
-    const std::string path = csv_beside(csv, kShares);
-    beside.emplace("the table of shares beside " + run.args.spelled("csv"), path);
-    check_replaceable(path);
-  }
-  const FluxRequest request{.target = target_of(run.args),
-                            .period = period_of(run.args),
-                            .wavelengths = wavelengths_text(run.args),
-                            .irradiance = irradiance,
-                            .irradiance_name = run.args.text("irradiance"),
-                            .by_instance = is_by_instance};
+  const bool has_organs = run.args.given("by");
+  if (!has_organs) warn_if_nothing_is_kept(run);
+  const std::list<PlannedOutput> planned = planned_tables(run.args);
+  FluxRequest request = request_of(run, irradiance);
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   std::optional<PhotonWeights> photons;
   std::string light;
   const auto load = [&] {
     const SceneDescription description = described_scene(run);
+    if (request.energy) {
+      set_bands(run, description, request);
+      warn_of_no_unit(run, description);
+    }
     auto made = std::make_unique<FluxMeter>(run.session(), description, request);
     photons = photon_weights(run, description, *made, irradiance);
     light = photon_light_name(run, description);
@@ -327,10 +371,12 @@ Result flux(const JobRun& run) {
   warn_of_unmet(run, measurement);
   const bool are_weighted = !bands.front().response.empty();
   if (are_weighted && !run.args.given("irradiance")) light = kOfScene;
-  Result result{
-      .tables = {share_table(measurement, photons)},
-      .facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}},
-      .text = share_text(measurement, photons)};
+  Result result = request.energy
+                      ? energy_result(measurement)
+                      : Result{.tables = {share_table(measurement, photons)}, .text = share_text(measurement, photons)};
+  result.facts.insert(
+      result.facts.begin(),
+      {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}});
   if (photons) result.facts.push_back({"par_umol_m2_s", photons->incident});
   if (photons || are_weighted) result.facts.push_back({"irradiance", light});
   run.log().info(
@@ -338,14 +384,20 @@ Result flux(const JobRun& run) {
                   photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s), irradiance {}", photons->incident, light)
                   : are_weighted ? fmt::format("; bands are weighted by the irradiance {}", light)
                                  : ""));
+  if (request.energy) explain_no_leaves(run, *measurement.energy);
   warn_of_end(run, measurement);
-  if (!is_by_instance) return result;
-  warn_of_unmet_instances(run, measurement);
-  const InstanceErrors errors = instance_errors(measurement, photons);
-  report_instance_errors(run, measurement, errors);
-  result.facts.push_back({"instance_error_median", errors.median});
-  result.facts.push_back({"instance_error_largest", errors.largest});
-  add_instances(run, measurement, photons, result);
+  if (has_organs) {
+    warn_of_unmet_organs(run, measurement);
+    const InstanceErrors errors = instance_errors(measurement, photons);
+    report_instance_errors(run, measurement, errors);
+    result.facts.push_back({"instance_error_median", errors.median});
+    result.facts.push_back({"instance_error_largest", errors.largest});
+    const bool by_instance = request.organs == OrganKind::instance && !request.energy;
+    add_organs(run, by_instance ? instance_table(measurement, photons) : organ_table(measurement, *meter.organs()),
+               result);
+    write_ply(run, measurement, *meter.organs());
+  }
+  result.csv_tables = result.tables.size();
   return result;
 }
 
@@ -354,7 +406,8 @@ Result flux(const JobRun& run) {
 extern const JobInfo kFluxJob("flux", "Measure",
                               "Measure the light budget of a scene: reflection, transmission, absorption.",
                               "Reports shares of the incident light by wavelength: reflected, transmitted, and "
-                              "absorbed by each material. With wavelengths from 400 to 700 nm, also shares "
+                              "absorbed by each material; with --bands also W/m2 and µmol/(m2 s). With wavelengths "
+                              "from 400 to 700 nm, also shares "
                               "of the photons (PAR). The share of a band with a response is that of the light under "
                               "it: the mean weighted by response times irradiance.",
                               kParams, SessionUse::all, flux);

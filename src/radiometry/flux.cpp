@@ -1,5 +1,7 @@
 #include "radiometry/flux.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -10,8 +12,10 @@
 #include "radiometry/flux_sums.h"
 #include "radiometry/incident_light.h"
 #include "radiometry/lit_bands.h"
+#include "radiometry/photons.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/sums_file.h"
+#include "scene/leaf_models.h"
 #include "system/machine.h"
 
 namespace frond {
@@ -29,6 +33,46 @@ std::vector<uint32_t> reflectors_of(const Scene& scene) {
   return materials;
 }
 
+std::string name_of(const MaterialDescription& material) {
+  return material.name.empty() ? material.plugin.name : material.name;
+}
+
+/// Returns the flags of the materials that count as leaves; empty if there are none.
+std::vector<uint8_t> leaves_of(const SceneDescription& description, const FluxRequest& request,
+                               const Registry& registry) {
+  if (!request.energy) return {};
+  std::vector<uint8_t> flags = request.leaves.empty() ? leaf_flags(description, registry)
+                                                      : counted_materials(description, request.leaves, registry);
+  if (std::ranges::count(flags, 0) == std::ssize(flags)) flags.clear();
+  return flags;
+}
+
+/// Returns the range of all ranges; nullopt if there are none.
+std::optional<Interval> range_of(const std::vector<Interval>& ranges) {
+  if (ranges.empty()) return {};
+  return Interval{std::ranges::min(ranges, {}, &Interval::min).min, std::ranges::max(ranges, {}, &Interval::max).max};
+}
+
+/// Returns a text that identifies the request, except target and period.
+std::string text_of(const FluxRequest& request) {
+  std::string text = "flux";
+  if (request.organs) text += fmt::format(" by {}", kOrganKinds[size_t(*request.organs)]);
+  if (request.energy) text += fmt::format(" energy, leaves {}", fmt::join(request.leaves, " "));
+  for (const Interval& nm : request.ranges_nm) text += fmt::format(" {:g}:{:g}", nm.min, nm.max);
+  if (request.irradiance) text += " irradiance " + request.irradiance_name;
+  return text;
+}
+
+/// Channels of an organ in a band, where direct and diffuse light, energy and photons are apart.
+enum OrganChannel : size_t { kOrganDirect, kOrganDiffuse, kOrganPhotons, kOrganChannels };
+
+/// Returns a mean of an organ; its error is NaN if no path was absorbed.
+MeanError organ_mean(const Moment& moment, uint64_t paths) {
+  MeanError mean = moment.mean(paths);
+  if (moment.sum == 0) mean.standard_error = NAN;
+  return mean;
+}
+
 }  // namespace
 
 struct FluxMeter::State {
@@ -37,20 +81,36 @@ struct FluxMeter::State {
   IncidentLight light;
   LitBands wavelengths;
   size_t materials, bands;
+  FluxChannels channels;
+  std::vector<uint8_t> is_leaf;           ///< by material index; empty: leaves are not measured apart
   std::vector<uint32_t> reflectors = {};  ///< indices of the materials of surfaces that light can hit
-  std::vector<Moment> moments = {};       ///< by quantity and band
+  std::vector<Moment> moments = {};       ///< by quantity and channel
   std::vector<uint64_t> seen = {};        ///< number of paths, by band
-  std::unique_ptr<InstanceSums> by_instance = {};
+  std::unique_ptr<Organs> organs = {};
+  std::unique_ptr<OrganSums> by_organ = {};
+  std::optional<Vec3> sun = {};          ///< direction toward the only sun
+  std::vector<Interval> ranges_nm = {};  ///< of the bands, with splitting
+  Interval optics_nm = {};               ///< of the scene's responses
+  LeafArea leaf_area = {};
   uint64_t paths = 0;
 
-  size_t quantities() const { return kFirstOfMaterials + materials * kQuantitiesOfMaterial; }
+  size_t quantities() const {
+    const size_t of_materials = kFirstOfMaterials + materials * kQuantitiesOfMaterial;
+    return is_leaf.empty() ? of_materials : leaf_quantity(materials, kLeafGroups, kAbsorbed);
+  }
+  /// Moves wavelengths beyond the scene's responses to their ends.
+  void limit_to_optics(SampledWavelengths& lambda) const {
+    for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
+      lambda.nm[lane] = std::clamp(lambda.nm[lane], float(optics_nm.min), float(optics_nm.max));
+  }
+  size_t organ_channels() const { return channels.splits ? kOrganChannels * bands : bands; }
   const Scene& scene() const { return loaded.scene(); }
   /// Returns all accumulators as bytes, for save and resume.
   std::vector<std::span<std::byte>> sums() {
     std::vector<std::span<std::byte>> arrays{std::as_writable_bytes(std::span(&paths, 1)),
                                              std::as_writable_bytes(std::span(moments)),
                                              std::as_writable_bytes(std::span(seen))};
-    if (by_instance) arrays.push_back(by_instance->bytes());
+    if (by_organ) arrays.push_back(by_organ->bytes());
     return arrays;
   }
 };
@@ -61,7 +121,10 @@ class FluxMeter::Block {
   static constexpr uint64_t kPaths = 1024;
 
   explicit Block(State& state)
-      : moments(state.quantities() * state.bands), seen(state.bands), state_(state), shares_(state.quantities()) {}
+      : moments(state.quantities() * state.channels.count()),
+        seen(state.bands),
+        state_(state),
+        shares_(state.quantities()) {}
 
   /// Throws SurfaceError.
   void trace(uint64_t first, uint64_t count) {
@@ -75,9 +138,9 @@ class FluxMeter::Block {
       add_shares(lambda);
     }
   }
-  /// Adds to the sums of instances, which have no block of their own: once the block counts.
-  void add_instances() {
-    for (const Absorbed& a : absorbed_) state_.by_instance->add(a.instance, a.band, a.share);
+  /// Adds to the sums of organs, which have no block of their own: once the block counts.
+  void add_organs() {
+    for (const Absorbed& a : absorbed_) state_.by_organ->add(a.organ, a.channel, a.share);
     absorbed_ = {};
   }
 
@@ -94,6 +157,8 @@ class FluxMeter::Block {
     const Vec2 u{random.uniform(), random.uniform()};
     const auto light = state_.light.sample(random, lambda);
     if (!light) return;
+    is_direct_ = light->is_direct;
+    if (state_.channels.splits) state_.limit_to_optics(lambda);
     const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
     const Vec3d d = to_double(light->direction);
     const Scene& scene = state_.scene();
@@ -105,7 +170,9 @@ class FluxMeter::Block {
     for (int vertex = 0, depth = 0; vertex - depth <= kMostPassed; ++vertex) {
       if (vertex % kPolled == kPolled - 1) check_stop();
       SurfacePoint point;
-      if (!scene.intersect(ray, vertex_key(key, uint64_t(vertex)).key(Use::ray), point))
+      GeometryHit met;
+      const VertexKey at = vertex_key(key, uint64_t(vertex));
+      if (!scene.intersect(ray, at.key(Use::ray), point, met))
         return shares_.add_end(ray.d.z > 0 ? kReflected : kTransmitted, share);
       arena_.reset();
       Scattered scattered;
@@ -125,7 +192,9 @@ class FluxMeter::Block {
       }
       shares_.add(flux_quantity(point.material_id, kIncident), share);
       if (depth++ == 0) shares_.add(flux_quantity(point.material_id, kUncollided), share);
-      shares_.add_absorbed(point.material_id, point.instance_id, share * SampledSpectrum(1 - scattered.weight.v));
+      const SampledSpectrum absorbed = share * SampledSpectrum(1 - scattered.weight.v);
+      shares_.add_absorbed(point.material_id, state_.organs ? state_.organs->number(met) : 0, absorbed);
+      if (!state_.is_leaf.empty() && state_.is_leaf[point.material_id]) add_leaf(point.hit, at, share, absorbed);
       share *= scattered.weight;
       lambda.retire_black_lanes(share);
       if (share.is_black()) return;
@@ -134,7 +203,42 @@ class FluxMeter::Block {
     }
   }
 
+  /// Adds the light of a hit of a leaf, which is sunlit or shaded.
+  void add_leaf(const Hit& hit, VertexKey at, const SampledSpectrum& incident, const SampledSpectrum& absorbed) {
+    const auto add = [&](FluxLeaves leaves) {
+      shares_.add(leaf_quantity(state_.materials, leaves, kAbsorbed), absorbed);
+      shares_.add(leaf_quantity(state_.materials, leaves, kIncident), incident);
+    };
+    add(kAllLeaves);
+    if (state_.sun)
+      add(is_sunlit(state_.scene(), hit, *state_.sun, at.key(Use::shadow_ray)) ? kSunlitLeaves : kShadedLeaves);
+  }
+
+  /// Adds energy and photons to the channels of direct or of diffuse light.
+  void add_split_shares(const SampledWavelengths& lambda) {
+    for (size_t lane = 0; lane < size_t(lambda.count); ++lane) {
+      const size_t band = lambda.band[lane];
+      ++seen[band];
+      const double per_energy = double(lambda.nm[lane]) / state_.wavelengths.light(band).mean_nm;
+      const size_t energy = state_.channels.energy(band, is_direct_),
+                   photons = state_.channels.photons(band, is_direct_);
+      for (size_t q = 0; q < shares_.values().size(); ++q) {
+        const auto share = double(shares_.values()[q].v[lane]);
+        if (share == 0) continue;
+        moments[q * state_.channels.count() + energy].add(share);
+        moments[q * state_.channels.count() + photons].add(share * per_energy);
+      }
+      for (const auto& [organ, absorbed] : shares_.absorbed_by_organ()) {
+        const auto share = double(absorbed.v[lane]);
+        const size_t first = band * kOrganChannels;
+        absorbed_.push_back({organ, first + (is_direct_ ? kOrganDirect : kOrganDiffuse), share});
+        absorbed_.push_back({organ, first + kOrganPhotons, share * per_energy});
+      }
+    }
+  }
+
   void add_shares(const SampledWavelengths& lambda) {
+    if (state_.channels.splits) return add_split_shares(lambda);
     for (size_t q = 0; q < shares_.values().size(); ++q) {
       const SensorResponse response = state_.scene().wavelengths().sensor(shares_.values()[q], lambda);
       for (size_t k = 0; k < size_t(response.count); ++k)
@@ -142,15 +246,14 @@ class FluxMeter::Block {
     }
     for (size_t lane = 0; lane < size_t(lambda.count); ++lane) {
       ++seen[lambda.band[lane]];
-      if (!state_.by_instance) continue;
-      for (const auto& [instance, share] : shares_.absorbed_by_instance())
-        absorbed_.push_back({instance, lambda.band[lane], double(share.v[lane])});
+      for (const auto& [organ, share] : shares_.absorbed_by_organ())
+        absorbed_.push_back({organ, lambda.band[lane], double(share.v[lane])});
     }
   }
 
   struct Absorbed {
-    uint64_t instance;
-    size_t band;
+    uint64_t organ;
+    size_t channel;
     double share;
   };
 
@@ -158,41 +261,58 @@ class FluxMeter::Block {
   Arena arena_;
   FluxShares shares_;
   std::vector<Absorbed> absorbed_;
+  bool is_direct_ = false;  ///< where the path's light came from
 };
 
-FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxRequest& request) {
+FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxRequest& request, const Scene* other) {
   if (description.has_media())
     fail(description.media.front().plugin.where,
          "flux does not trace participating media; brf and render do, by integrator \"volpath\"");
   prepare_for_radiometry(session.registry(), request.wavelengths, request.period, false, description);
-  std::string what = request.by_instance ? "flux by instance" : "flux";
-  if (request.irradiance) what += " irradiance " + request.irradiance_name;
-  LoadedScene loaded =
-      session.load(std::move(description), {.command = measurement_text(what, request.target, request.period)});
+  std::vector<uint8_t> is_leaf = leaves_of(description, request, session.registry());
+  LoadedScene loaded = session.load(
+      std::move(description), {.command = measurement_text(text_of(request), request.target, request.period)}, other);
   const Scene& scene = loaded.scene();
+  if (request.energy && scene.wavelengths().bands()[0].response.empty())
+    fail({}, "energy is measured in bands with responses: single wavelengths have none");
   const Target target = request.target ? *request.target : default_target(scene, session.log());
   check_target(scene, target);
-  HorizontalIrradiance irradiance(loaded);
-  LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance);
+  std::vector<Interval> ranges_nm = request.ranges_nm;
+  if (request.energy && ranges_nm.empty())
+    for (const Band& band : scene.wavelengths().bands())
+      ranges_nm.push_back({band.response.front().nm, band.response.back().nm});
+  HorizontalIrradiance irradiance(loaded, range_of(ranges_nm));
+  LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance, request.ranges_nm);
   IncidentLight light(scene, std::move(irradiance), wavelengths.sample_for_index(0, 0.5f));
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
-  state_ = std::make_unique<State>(
-      State{std::move(loaded), target, std::move(light), std::move(wavelengths), materials, bands});
-  state_->reflectors = reflectors_of(state_->scene());
-  state_->moments.resize(state_->quantities() * bands);
-  state_->seen.resize(bands);
-  if (!request.by_instance) return;
-  const uint64_t instances = state_->scene().geometry().instances();
-  if (instances == 0) fail({}, "this scene has no instances of objects (ObjectInstance, Shape \"instances\")");
-  if (const double bytes = double(instances) * double(bands) * InstanceSums::kCellBytes; bytes > machine_memory())
-    fail({}, "{} instances and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: use fewer bands",
-         instances, bands, bytes * 1e-9, machine_memory() * 1e-9);
-  state_->by_instance = std::make_unique<InstanceSums>(instances, bands);
+  state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(light), std::move(wavelengths), materials,
+                                         bands, FluxChannels{bands, request.energy}, std::move(is_leaf)});
+  State& s = *state_;
+  s.reflectors = reflectors_of(s.scene());
+  s.moments.resize(s.quantities() * s.channels.count());
+  s.seen.resize(bands);
+  s.optics_nm = s.scene().wavelengths().range_nm();
+  s.ranges_nm = std::move(ranges_nm);
+  if (!s.is_leaf.empty()) {
+    constexpr size_t kPoints = 1 << 17;
+    s.sun = direction_to_sun(s.scene().lights());
+    s.leaf_area = leaf_area(s.scene(), target, s.is_leaf, s.sun, kPoints, session.pool());
+  }
+  if (!request.organs) return;
+  std::vector<std::string> names;
+  for (const MaterialDescription& m : s.loaded.description().materials) names.push_back(name_of(m));
+  s.organs = std::make_unique<Organs>(s.scene(), std::move(names), *request.organs);
+  const double bytes = double(s.organs->size()) * double(s.organ_channels()) * OrganSums::kCellBytes;
+  if (bytes > machine_memory())
+    fail({}, "{} organs and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: use fewer bands",
+         s.organs->size(), bands, bytes * 1e-9, machine_memory() * 1e-9);
+  s.by_organ = std::make_unique<OrganSums>(s.organs->size(), s.organ_channels());
 }
 
 FluxMeter::~FluxMeter() = default;
 
 const Scene& FluxMeter::scene() const { return state_->scene(); }
+const Organs* FluxMeter::organs() const { return state_->organs.get(); }
 
 void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control,
                       const std::function<void()>& after_round) {
@@ -214,7 +334,7 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
       one->trace(state_->paths + begin, std::min(Block::kPaths, round - begin));
       const std::lock_guard lock(in_order);
       traced_blocks[size_t(block)] = std::move(one);
-      for (; complete < blocks && traced_blocks[complete]; ++complete) traced_blocks[complete]->add_instances();
+      for (; complete < blocks && traced_blocks[complete]; ++complete) traced_blocks[complete]->add_organs();
     };
     try {
       pool.for_each(int64_t(blocks), trace_block);
@@ -253,43 +373,94 @@ void FluxMeter::resume(const std::filesystem::path& path) {
 
 FluxMeasurement FluxMeter::read() const {
   const State& s = *state_;
+  const auto bands = s.scene().wavelengths().bands();
+  const auto moment = [&](size_t quantity, size_t channel) {
+    return s.moments[quantity * s.channels.count() + channel];
+  };
   const auto shares = [&](size_t quantity) {
     std::vector<MeanError> result;
-    for (size_t band = 0; band < s.bands; ++band)
-      result.push_back(s.moments[quantity * s.bands + band].mean(s.seen[band]));
+    for (size_t band = 0; band < s.bands; ++band) {
+      const Moment direct = moment(quantity, s.channels.energy(band, true));
+      result.push_back(
+          (s.channels.splits ? direct + moment(quantity, s.channels.energy(band, false)) : direct).mean(s.seen[band]));
+    }
     return result;
   };
-  FluxMeasurement measurement{.bands = {},
+  FluxMeasurement measurement{.bands = {bands.begin(), bands.end()},
                               .reflected = shares(kReflected),
                               .transmitted = shares(kTransmitted),
                               .materials = {},
                               .sum = shares(kTotal),
                               .paths = s.paths,
                               .target_area = (s.target.x1 - s.target.x0) * (s.target.y1 - s.target.y0),
-                              .by_instance = {},
+                              .by_organ = {},
                               .areas = {}};
-  const auto bands = s.scene().wavelengths().bands();
-  measurement.bands.assign(bands.begin(), bands.end());
   for (const uint32_t m : s.reflectors) {
-    const MaterialDescription& material = s.loaded.description().materials[m];
-    FluxMeasurement::OfMaterial one{material.name.empty() ? material.plugin.name : material.name,
-                                    shares(flux_quantity(m, kAbsorbed)), shares(flux_quantity(m, kIncident)),
-                                    shares(flux_quantity(m, kUncollided))};
+    FluxMeasurement::OfMaterial one{name_of(s.loaded.description().materials[m]), shares(flux_quantity(m, kAbsorbed)),
+                                    shares(flux_quantity(m, kIncident)), shares(flux_quantity(m, kUncollided))};
     one.is_hit = std::ranges::any_of(one.incident, [](const MeanError& share) { return share.mean > 0; });
     if (!one.is_hit)
       for (auto* of_material : {&one.absorbed, &one.incident, &one.uncollided})
         for (MeanError& share : *of_material) share.standard_error = NAN;
     measurement.materials.push_back(std::move(one));
   }
-  if (!s.by_instance) return measurement;
-  measurement.areas = s.scene().geometry().areas();
-  measurement.by_instance.reserve(s.by_instance->size());
-  for (size_t cell = 0; cell < s.by_instance->size(); ++cell) {
-    const Moment moment = s.by_instance->at(cell);
-    measurement.by_instance.push_back(moment.mean(s.seen[cell % s.bands]));
-    if (moment.sum == 0) measurement.by_instance.back().standard_error = NAN;
+  if (s.channels.splits) measurement.energy = read_energy();
+  if (!s.by_organ) return measurement;
+  measurement.areas = s.organs->areas();
+  if (s.channels.splits) {
+    for (const OrganShare& share : measurement.energy->organs) measurement.by_organ.push_back(share.energy);
+    return measurement;
   }
+  measurement.by_organ.reserve(s.by_organ->size());
+  for (size_t cell = 0; cell < s.by_organ->size(); ++cell)
+    measurement.by_organ.push_back(organ_mean(s.by_organ->at(cell), s.seen[cell % s.bands]));
   return measurement;
+}
+
+EnergyBudget FluxMeter::read_energy() const {
+  const State& s = *state_;
+  const auto shares = [&s](size_t quantity) {
+    std::vector<EnergyShare> result;
+    for (size_t band = 0; band < s.bands; ++band) {
+      const auto parts = [&](size_t direct, size_t diffuse) {
+        const Moment* of_quantity = &s.moments[quantity * s.channels.count()];
+        const Moment &a = of_quantity[direct], &b = of_quantity[diffuse];
+        return LightParts{(a + b).mean(s.seen[band]), a.mean(s.seen[band]), b.mean(s.seen[band])};
+      };
+      result.push_back({parts(s.channels.energy(band, true), s.channels.energy(band, false)),
+                        parts(s.channels.photons(band, true), s.channels.photons(band, false))});
+    }
+    return result;
+  };
+  EnergyBudget budget;
+  budget.reflected = shares(kReflected), budget.transmitted = shares(kTransmitted);
+  for (size_t band = 0; band < s.bands; ++band) {
+    const BandLight all = s.wavelengths.light(band), direct = s.wavelengths.direct_light(band);
+    budget.incident.push_back(
+        {s.ranges_nm[band],
+         {all.energy, direct.energy},
+         {all.energy * all.mean_nm / kPhotonEnergy, direct.energy * direct.mean_nm / kPhotonEnergy}});
+  }
+  for (const uint32_t m : s.reflectors)
+    budget.materials.push_back({name_of(s.loaded.description().materials[m]), shares(flux_quantity(m, kAbsorbed)),
+                                shares(flux_quantity(m, kIncident))});
+  if (!s.is_leaf.empty()) {
+    const auto leaves = [&](FluxLeaves group) {
+      return EnergyBudget::OfLeaves{shares(leaf_quantity(s.materials, group, kAbsorbed)),
+                                    shares(leaf_quantity(s.materials, group, kIncident))};
+    };
+    budget.leaves = leaves(kAllLeaves);
+    if (s.sun) budget.sunlit = leaves(kSunlitLeaves), budget.shaded = leaves(kShadedLeaves);
+    budget.leaf_area = s.leaf_area;
+  }
+  if (!s.by_organ) return budget;
+  for (size_t cell = 0; cell < s.by_organ->size(); cell += kOrganChannels) {
+    const uint64_t paths = s.seen[cell / kOrganChannels % s.bands];
+    const Moment direct = s.by_organ->at(cell + kOrganDirect), diffuse = s.by_organ->at(cell + kOrganDiffuse);
+    budget.organs.push_back({organ_mean(direct + diffuse, paths), organ_mean(direct, paths),
+                             organ_mean(s.by_organ->at(cell + kOrganPhotons), paths)});
+  }
+  return budget;
 }
 
 double FluxMeasurement::error() const {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "radiometry/brf.h"
+#include "radiometry/energy_budget.h"
+#include "radiometry/organs.h"
 
 namespace frond {
 
@@ -19,8 +21,15 @@ struct FluxRequest {
   std::string wavelengths = {};                      ///< a PluginText of `bands`
   /// Spectral irradiance, of any unit, by which bands with responses are weighted; nullptr: that of the scene's lights.
   SpectrumPtr irradiance = {};
-  std::string irradiance_name = {};  ///< identifies `irradiance`
-  bool by_instance = false;          ///< also measure the absorption of each instance
+  std::string irradiance_name = {};      ///< identifies `irradiance`
+  std::optional<OrganKind> organs = {};  ///< also measure the absorption of each organ
+  /// Also measure energy and photons, direct and diffuse light, and sunlit and shaded leaves, each apart:
+  /// FluxMeasurement::energy. All bands must have responses.
+  bool energy = false;
+  /// With `energy`: ranges of the bands. The optics of surfaces are taken at the nearest wavelength of the responses of
+  /// `wavelengths`, which may be narrower. Empty: those responses.
+  std::vector<Interval> ranges_nm = {};
+  std::vector<std::string> leaves = {};  ///< with `energy`: materials that count as leaves; empty: all leaf models
 };
 
 /// Light budget by band: shares of the light that enters through the target.
@@ -39,9 +48,10 @@ struct FluxMeasurement {
   std::vector<MeanError> sum;          ///< sum of all absorbed and leaving light: 1 up to noise
   uint64_t paths = 0;
   double target_area = 0;  ///< in scene units squared
-  /// Absorbed by each instance, by band; empty unless requested. The error is NaN where no path was absorbed.
-  std::vector<MeanError> by_instance;
-  std::vector<float> areas;  ///< one-sided area of each instance; empty unless requested
+  /// Absorbed by each organ, by band; empty unless requested. The error is NaN where no path was absorbed.
+  std::vector<MeanError> by_organ;
+  std::vector<float> areas;  ///< one-sided area of each organ; empty unless requested
+  std::optional<EnergyBudget> energy = {};
   /// Returns the RMS of the standard errors of reflected and absorbed shares, relative to the incident light.
   double error() const;
 };
@@ -50,8 +60,9 @@ struct FluxMeasurement {
 /// evaluated for the actual direction of the light, regardless of the scene's incident direction: energy is conserved.
 class FluxMeter {
  public:
-  /// Throws InputError, also if there are too many instances to measure each.
-  FluxMeter(Session& session, SceneDescription description, const FluxRequest& request);
+  /// Throws InputError, also if there are too many organs to measure each. `other`: a scene with the same geometry,
+  /// which is then shared.
+  FluxMeter(Session& session, SceneDescription description, const FluxRequest& request, const Scene* other = nullptr);
   ~FluxMeter();
 
   /// Traces this many further paths, or fewer if stopped or out of time. The result depends only on the total number.
@@ -60,6 +71,8 @@ class FluxMeter {
              const std::function<void()>& after_round = {});
   /// Returns the measurement so far.
   FluxMeasurement read() const;
+  /// Returns the organs; nullptr unless requested.
+  const Organs* organs() const;
   uint64_t paths() const;  ///< number of paths traced
   /// Writes the accumulators; the file is replaced only when complete. Throws InputError with the system's reason.
   void save(const std::filesystem::path& path) const;
@@ -69,6 +82,8 @@ class FluxMeter {
   const Scene& scene() const;
 
  private:
+  EnergyBudget read_energy() const;
+
   class Block;
   struct State;
   std::unique_ptr<State> state_;

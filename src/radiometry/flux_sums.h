@@ -12,13 +12,32 @@
 
 namespace frond {
 
-/// Index of a quantity of FluxMeter in a path's row. Three quantities for each material follow.
+/// Index of a quantity of FluxMeter in a path's row. Three quantities for each material follow, then two for each of
+/// FluxLeaves.
 enum FluxQuantity : size_t { kReflected, kTransmitted, kTotal, kFirstOfMaterials };
 enum FluxOfMaterial : size_t { kAbsorbed, kIncident, kUncollided, kQuantitiesOfMaterial };
 
 inline size_t flux_quantity(size_t material, FluxOfMaterial quantity) {
   return kFirstOfMaterials + material * kQuantitiesOfMaterial + quantity;
 }
+
+/// Leaf surfaces, of which the absorbed and the incident light is measured.
+enum FluxLeaves : size_t { kAllLeaves, kSunlitLeaves, kShadedLeaves, kLeafGroups };
+
+inline size_t leaf_quantity(size_t materials, FluxLeaves leaves, FluxOfMaterial quantity) {
+  return flux_quantity(materials, kAbsorbed) + leaves * 2 + quantity;
+}
+
+/// Channels of a quantity: one for each band, or four.
+struct FluxChannels {
+  size_t bands;
+  bool splits;  ///< whether direct and diffuse light, energy and photons have channels of their own
+
+  size_t count() const { return splits ? 4 * bands : bands; }
+  /// Channel of the energy. Without splitting, that of all light.
+  size_t energy(size_t band, bool is_direct) const { return splits ? 4 * band + (is_direct ? 0 : 1) : band; }
+  size_t photons(size_t band, bool is_direct) const { return 4 * band + (is_direct ? 2 : 3); }
+};
 
 /// One path's shares of the incident light by quantity, lane by lane.
 class FluxShares {
@@ -34,18 +53,18 @@ class FluxShares {
     add(quantity, share);
     add(kTotal, share);
   }
-  /// `instance`: SurfacePoint::instance_id.
-  void add_absorbed(uint32_t material, uint64_t instance, const SampledSpectrum& share) {
+  /// `organ`: number of the organ that absorbs; 0: none.
+  void add_absorbed(uint32_t material, uint64_t organ, const SampledSpectrum& share) {
     add_end(flux_quantity(material, kAbsorbed), share);
-    if (instance == 0) return;
-    const auto known = std::ranges::find(absorbed_, instance, &std::pair<uint64_t, SampledSpectrum>::first);
+    if (organ == 0) return;
+    const auto known = std::ranges::find(absorbed_, organ, &std::pair<uint64_t, SampledSpectrum>::first);
     if (known == absorbed_.end())
-      absorbed_.emplace_back(instance, share);
+      absorbed_.emplace_back(organ, share);
     else
       known->second += share;
   }
   const std::vector<SampledSpectrum>& values() const { return values_; }
-  const std::vector<std::pair<uint64_t, SampledSpectrum>>& absorbed_by_instance() const { return absorbed_; }
+  const std::vector<std::pair<uint64_t, SampledSpectrum>>& absorbed_by_organ() const { return absorbed_; }
 
  private:
   std::vector<SampledSpectrum> values_;
@@ -60,6 +79,8 @@ struct Moment {
     sum += other.sum, square += other.square;
     return *this;
   }
+  /// Moment of the sum of two values of which each path has at most one.
+  friend Moment operator+(Moment a, const Moment& b) { return a += b; }
   MeanError mean(uint64_t paths) const {
     const auto n = double(paths);
     if (paths == 0) return {};
@@ -68,12 +89,12 @@ struct Moment {
   }
 };
 
-/// Moments of instances, which all threads add to. They are integers, so that the sum does not depend on the order.
-class InstanceSums {
+/// Moments of organs, which all threads add to. They are integers, so that the sum does not depend on the order.
+class OrganSums {
  public:
-  InstanceSums(uint64_t instances, size_t bands) : bands_(bands), cells_(instances * bands) {}
-  void add(uint64_t instance, size_t band, double share) {
-    Cell& cell = cells_[(instance - 1) * bands_ + band];
+  OrganSums(uint64_t organs, size_t channels) : channels_(channels), cells_(organs * channels) {}
+  void add(uint64_t organ, size_t channel, double share) {
+    Cell& cell = cells_[(organ - 1) * channels_ + channel];
     std::atomic_ref(cell.sum).fetch_add(std::llrint(share * kUnits), std::memory_order_relaxed);
     std::atomic_ref(cell.square).fetch_add(std::llrint(share * share * kUnits), std::memory_order_relaxed);
   }
@@ -88,7 +109,7 @@ class InstanceSums {
   struct Cell {
     int64_t sum = 0, square = 0;
   };
-  size_t bands_;
+  size_t channels_;
   std::vector<Cell> cells_;
 };
 

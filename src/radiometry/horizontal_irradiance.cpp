@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/fluorescence.h"
@@ -36,28 +37,43 @@ float radical_inverse(uint32_t i) {
   return float(i >> 8) * 0x1p-24f;
 }
 
-/// Returns the irradiance of one light on the plane at up to kLanes wavelengths.
-std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengths& lambda) {
+/// Irradiance at up to kLanes wavelengths: of all light, and of the direct light.
+struct LaneIrradiance {
+  std::array<double, kLanes> all{}, direct{};
+};
+
+/// Returns the irradiance of one light on the plane.
+LaneIrradiance irradiance(const Light& light, const SampledWavelengths& lambda) {
   constexpr int kDirections = 1 << 16;
-  std::array<double, kLanes> sum{};
+  LaneIrradiance sum;
   const int count = light.is_delta() ? 1 : kDirections;
   for (int i = 0; i < count; ++i) {
     const Vec2 u{(float(i) + 0.5f) / float(count), radical_inverse(uint32_t(i))};
     const auto s = light.sample({}, u, lambda);
     if (!s || s->wi.z <= 0 || s->pdf <= 0) continue;
-    for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += double(s->radiance.v[lane] * s->wi.z / s->pdf) / count;
+    const bool direct = is_direct(light, s->wi);
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      const double of_sample = double(s->radiance.v[lane] * s->wi.z / s->pdf) / count;
+      sum.all[lane] += of_sample;
+      if (direct) sum.direct[lane] += of_sample;
+    }
   }
   return sum;
 }
 
-/// Returns the irradiance of one light on the plane at each wavelength.
-std::vector<double> irradiance(const Light& light, std::span<const double> nm) {
-  std::vector<double> values;
+/// Irradiance of one light on the plane at each wavelength of a list.
+struct ListedIrradiance {
+  std::vector<double> all, direct;
+};
+
+ListedIrradiance irradiance(const Light& light, std::span<const double> nm) {
+  ListedIrradiance values;
   for (size_t begin = 0; begin < nm.size(); begin += kLanes) {
     check_stop();
     const SampledWavelengths lambda = lanes_at(nm.subspan(begin));
-    const auto four = irradiance(light, lambda);
-    values.insert(values.end(), four.begin(), four.begin() + lambda.count);
+    const LaneIrradiance four = irradiance(light, lambda);
+    values.all.insert(values.all.end(), four.all.begin(), four.all.begin() + lambda.count);
+    values.direct.insert(values.direct.end(), four.direct.begin(), four.direct.begin() + lambda.count);
   }
   return values;
 }
@@ -68,6 +84,35 @@ std::vector<double> points_nm(std::span<const Light* const> lights, Interval ran
   for (const Light* light : lights) append_points_nm(light->emission(), nm);
   complete_points_nm(range_nm, nm);
   return nm;
+}
+
+/// Returns the irradiance of one light at each wavelength; of an extended light from fewer wavelengths, those of its
+/// own table and every kStep_nm, between which the ratio to the light's emission is linear. The time is mostly that of
+/// the directions of a sky.
+ListedIrradiance irradiance_by_ratio(const Light& light, const std::vector<double>& nm) {
+  constexpr double kStep_nm = 10;
+  if (light.is_delta()) return irradiance(light, nm);
+  std::vector<double> few{nm.front(), nm.back()};
+  append_points_nm(light.emission(), few);
+  for (double at = std::ceil(nm.front() / kStep_nm) * kStep_nm; at < nm.back(); at += kStep_nm) few.push_back(at);
+  std::erase_if(few, [&nm](double at) { return at < nm.front() || at > nm.back(); });
+  std::ranges::sort(few);
+  few.erase(std::ranges::unique(few).begin(), few.end());
+  const ListedIrradiance known = irradiance(light, few);
+  const auto emitted = [&light](double at) { return double(light.emission().at(float(at))); };
+  ListedIrradiance values;
+  size_t above = 1;
+  for (const double at : nm) {
+    while (above + 1 < few.size() && few[above] < at) ++above;
+    const double t = (at - few[above - 1]) / (few[above] - few[above - 1]), emission = emitted(at);
+    const auto of_light = [&](const std::vector<double>& of_few) {
+      const auto ratio = [&](size_t i) { return emitted(few[i]) > 0 ? of_few[i] / emitted(few[i]) : 0; };
+      return std::lerp(ratio(above - 1), ratio(above), t) * emission;
+    };
+    values.all.push_back(of_light(known.all));
+    values.direct.push_back(of_light(known.direct));
+  }
+  return values;
 }
 
 SpectrumPtr spectrum_of(std::span<const double> nm, std::span<const double> values) {
@@ -87,19 +132,39 @@ void check_distant(const Scene& scene) {
 
 }  // namespace
 
-HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded) {
+bool is_direct(const Light& light, const Vec3& toward) {
+  if (light.is_delta()) return true;
+  const auto sun = light.sun();
+  if (!sun) return false;
+  const Vec3 apart = toward - *sun;
+  constexpr double kRadian = std::numbers::pi / 180;
+  const double chord = 2 * std::sin(kSunAngle_deg * kRadian / 2);
+  return double(dot(apart, apart)) < chord * chord;
+}
+
+HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm) {
   check_distant(loaded.scene());
   const auto lights = loaded.scene().lights();
   const WavelengthStrategy& wavelengths = loaded.scene().wavelengths();
   const auto listed = wavelengths.listed_nm();
-  const Interval range = wavelengths.range_nm();
+  Interval range = wavelengths.range_nm();
+  if (range_nm) {
+    range = {std::min(range.min, range_nm->min), std::max(range.max, range_nm->max)};
+    for (const Light* light : lights)
+      if (!(light->range_nm().min <= range.min && light->range_nm().max >= range.max))
+        fail(loaded.scene().light_where(size_t(light->index())),
+             "this light is known from {:g} to {:g} nm, the bands need {:g} to {:g} nm", light->range_nm().min,
+             light->range_nm().max, range.min, range.max);
+  }
   nm_ = listed.empty() ? points_nm(lights, {std::floor(range.min), std::ceil(range.max)})
                        : std::vector<double>(listed.begin(), listed.end());
   values_.resize(nm_.size());
+  std::vector<double> direct(nm_.size());
   std::vector<std::vector<double>> each;
   for (const Light* light : lights) {
-    each.push_back(irradiance(*light, nm_));
-    for (size_t i = 0; i < nm_.size(); ++i) values_[i] += each.back()[i];
+    ListedIrradiance of_light = range_nm ? irradiance_by_ratio(*light, nm_) : irradiance(*light, nm_);
+    for (size_t i = 0; i < nm_.size(); ++i) values_[i] += of_light.all[i], direct[i] += of_light.direct[i];
+    each.push_back(std::move(of_light.all));
   }
   const auto lit = std::ranges::count_if(values_, [](double value) { return value > 0; });
   for (const auto& of_light : each) {
@@ -107,7 +172,7 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded) {
     for (size_t i = 0; i < nm_.size(); ++i)
       if (values_[i] > 0) share += of_light[i] / values_[i] / double(lit);
   }
-  if (listed.empty()) spectrum_ = spectrum_of(nm_, values_);
+  if (listed.empty()) spectrum_ = spectrum_of(nm_, values_), direct_ = spectrum_of(nm_, direct);
   for (const Band& band : wavelengths.bands()) {
     bands_.push_back(band.response.empty() ? at(double(float(band.nm))) : mean_under(band.response, *spectrum_));
     if (!(bands_.back() > 0 || is_of_fluorescence(band)))
@@ -120,7 +185,7 @@ SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm) {
   const std::vector<double> points = points_nm(scene.lights(), nm);
   std::vector<double> values(points.size());
   for (const Light* light : scene.lights()) {
-    const std::vector<double> of_light = irradiance(*light, points);
+    const std::vector<double> of_light = irradiance(*light, points).all;
     for (size_t i = 0; i < points.size(); ++i) values[i] += of_light[i];
   }
   return spectrum_of(points, values);

@@ -10,13 +10,22 @@
 
 namespace frond {
 
+/// Angle around the centre of a sun (Light::sun) within which light is direct, degrees: the sun's disc, whose radius is
+/// at most 0.271 degrees, and next to nothing of the sky.
+inline constexpr double kSunAngle_deg = 0.3;
+
+/// Returns whether the light that arrives from `toward`, a unit vector toward the light, is direct: light of a single
+/// direction, or from within kSunAngle_deg of a sun. Other distant light is diffuse, such as that of a sky or an image.
+bool is_direct(const Light& light, const Vec3& toward);
+
 /// Spectral irradiance of a horizontal plane that faces +z above a scene, under its distant lights: the reference of a
 /// BRF or an absorbed share. Unit: unit of the lights' radiance, times sr.
 class HorizontalIrradiance {
  public:
-  /// Extended lights are integrated with 65,536 directions, the same on every machine. Throws InputError for a light at
-  /// a finite distance, or if no light comes from above in a band of the scene.
-  explicit HorizontalIrradiance(const LoadedScene& loaded);
+  /// Extended lights are integrated with 65,536 directions, the same on every machine. `range_nm`: to be known beyond
+  /// the wavelengths of the scene's bands. Throws InputError for a light at a finite distance, or whose data end within
+  /// the range, or if no light comes from above in a band of the scene.
+  explicit HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm = {});
 
   /// Returns the irradiance at up to kLanes wavelengths.
   SampledSpectrum at(const SampledWavelengths& lambda) const;
@@ -27,13 +36,15 @@ class HorizontalIrradiance {
   /// Returns the irradiance over the wavelengths of all bands, linear between points; nullptr if the bands are single
   /// wavelengths.
   const SpectrumPtr& spectrum() const { return spectrum_; }
+  /// Same, of the direct light (is_direct).
+  const SpectrumPtr& direct() const { return direct_; }
 
  private:
   double at(double nm) const;
 
   std::vector<double> nm_, values_;
   std::vector<double> shares_, bands_;
-  SpectrumPtr spectrum_;
+  SpectrumPtr spectrum_, direct_;
 };
 
 /// Returns the irradiance between two wavelengths as a spectrum with all points of the lights' own tables.

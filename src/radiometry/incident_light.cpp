@@ -70,7 +70,7 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
   const SampledSpectrum irradiance = irradiance_.at(lambda);
   for (int lane = 0; lane < lambda.count; ++lane)
     if (irradiance[lane] > 0) weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
-  return Sample{s->direction, weight};
+  return Sample{s->direction, weight, frond::is_direct(*lights_[i], -s->direction)};
 }
 
 }  // namespace frond

@@ -17,6 +17,7 @@ class IncidentLight {
   struct Sample {
     Vec3 direction;          ///< direction of propagation, downward
     SampledSpectrum weight;  ///< mean 1
+    bool is_direct = false;  ///< as frond::is_direct
   };
   /// Returns a direction of one of the lights; nullopt if the sample fails.
   std::optional<Sample> sample(RandomStream& random, const SampledWavelengths& lambda) const;

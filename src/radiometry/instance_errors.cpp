@@ -33,7 +33,7 @@ InstanceErrors errors_of(std::string light, const FluxMeasurement& measurement, 
 
 InstanceErrors instance_errors(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   const size_t bands = measurement.bands.size();
-  const std::span<const MeanError> shares(measurement.by_instance);
+  const std::span<const MeanError> shares(measurement.by_organ);
   if (photons)
     return errors_of("PAR photons", measurement,
                      [&](size_t i) { return photons->share(shares.subspan(i * bands, bands)); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "spectra/tabulated.h"
 #include "spectra/wavelengths/spectrum_points.h"
 
 namespace frond {
@@ -29,6 +30,28 @@ void check_scene_has_light(const std::vector<ResponsePoint>& lit, const Spectrum
   }
 }
 
+/// Returns the direct part of an irradiance by whose spectrum that of the scene is replaced: at each wavelength, the
+/// scene's ratio of direct to all light remains.
+SpectrumPtr direct_part(const Spectrum& irradiance, const HorizontalIrradiance& of_scene, Interval range_nm) {
+  std::vector<double> nm = points_nm(irradiance, range_nm);
+  append_points_nm(*of_scene.spectrum(), nm);
+  complete_points_nm(range_nm, nm);
+  std::vector<SpectrumPoint> points;
+  for (const double at : nm) {
+    const double all = double(of_scene.spectrum()->at(float(at))), direct = double(of_scene.direct()->at(float(at)));
+    points.push_back({at, all > 0 ? double(irradiance.at(float(at))) * direct / all : 0});
+  }
+  return std::make_shared<TabulatedSpectrum>(points);
+}
+
+/// Returns the light under a response; 0 if there is none.
+BandLight light_under(std::span<const ResponsePoint> response, const Spectrum& spectrum) {
+  const std::vector<ResponsePoint> lit = lit_response(response, spectrum);
+  if (lit.empty()) return {};
+  const ResponseSampler sampler(lit, {});
+  return {sampler.integral(), sampler.centroid_nm()};
+}
+
 }  // namespace
 
 void check_covers(const Spectrum& irradiance, Interval needed_nm, std::string_view what) {
@@ -43,10 +66,12 @@ void check_covers(const Spectrum& irradiance, Interval needed_nm, std::string_vi
 }
 
 LitBands::LitBands(const WavelengthStrategy& strategy, const HorizontalIrradiance& of_scene,
-                   const SpectrumPtr& irradiance)
+                   const SpectrumPtr& irradiance, std::span<const Interval> ranges)
     : strategy_(strategy) {
-  for (const Band& band : strategy.bands()) {
+  for (size_t i = 0; i < strategy.bands().size(); ++i) {
+    Band band = strategy.bands()[i];
     if (band.response.empty()) continue;
+    if (!ranges.empty()) band.response = {{ranges[i].min, 1}, {ranges[i].max, 1}};
     const Spectrum& light = irradiance ? *irradiance : *of_scene.spectrum();
     if (irradiance)
       check_covers(light, {band.response.front().nm, band.response.back().nm}, fmt::format("band {} needs", band.name));
@@ -54,6 +79,9 @@ LitBands::LitBands(const WavelengthStrategy& strategy, const HorizontalIrradianc
     if (lit.empty()) fail({}, "the irradiance is 0 in band {}", band.name);
     if (irradiance) check_scene_has_light(lit, *of_scene.spectrum(), band.name);
     samplers_.emplace_back(lit, Location{});
+    const Interval range{band.response.front().nm, band.response.back().nm};
+    direct_.push_back(
+        light_under(band.response, irradiance ? *direct_part(*irradiance, of_scene, range) : *of_scene.direct()));
   }
 }
 

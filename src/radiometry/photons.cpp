@@ -43,10 +43,7 @@ std::optional<PhotonWeights> PhotonWeights::from_irradiance(std::span<const Band
   for (const size_t i : within)
     if (kPar_nm.contains(bands[i].nm)) nm.push_back(bands[i].nm);
   std::ranges::sort(nm);
-  // Planck constant times speed of light times Avogadro constant, J m / mol (exact since 2019): W m^-2 nm^-1 at a
-  // wavelength in nm become umol m^-2 s^-1 nm^-1 by lambda / kEnergy.
-  constexpr double kEnergy = 6.62607015e-34 * 299792458 * 6.02214076e23 * 1e9 * 1e-6;
-  const auto photons = [&irradiance](double at) { return double(irradiance.at(float(at))) * at / kEnergy; };
+  const auto photons = [&irradiance](double at) { return double(irradiance.at(float(at))) * at / kPhotonEnergy; };
   PhotonWeights result{std::vector<double>(bands.size())};
   size_t above = 0;  // first of `within` at or above the cell; the cell lies between it and the one before
   for (size_t i = 1; i < nm.size(); ++i) {

@@ -1,7 +1,5 @@
 #include "radiometry/structure.h"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,10 +7,9 @@
 #include "core/math/random.h"
 #include "core/stop.h"
 #include "radiometry/horizontal_irradiance.h"
+#include "radiometry/leaf_points.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
-#include "scene/geometry/surface_points.h"
-#include "scene/leaf_models.h"
 #include "scene/scene_options.h"
 
 namespace frond {
@@ -32,13 +29,6 @@ double mean_projection(double theta, double alpha) {
   if (theta + alpha <= std::numbers::pi / 2) return straight;
   const double psi = std::acos(std::clamp(1 / (std::tan(theta) * std::tan(alpha)), -1.0, 1.0));
   return straight * (1 + 2 / std::numbers::pi * (std::tan(psi) - psi));
-}
-
-/// Returns how many repetitions of a position, by a period, lie in [low, high).
-double repetitions(double at, double low, double high, const std::optional<double>& period) {
-  if (period) return std::floor((high - at) / *period) - std::floor((low - at) / *period);
-  const double rounding = 1e-6 * (high - low);
-  return at >= low - rounding && at <= high + rounding ? 1 : 0;
 }
 
 /// Share of n rays that are gaps. Its error is unknown if all rays agree.
@@ -83,30 +73,6 @@ MeanError effective_index(std::vector<StructureMeasurement::Direction> direction
   return {sum, std::sqrt(variance)};
 }
 
-/// Returns the flags of the materials that count, by index. Throws InputError for an unknown name, and if no material
-/// counts.
-std::vector<uint8_t> counted_materials(const SceneDescription& description, const std::vector<std::string>& names,
-                                       const Registry& registry) {
-  std::vector<uint8_t> flags = leaf_flags(description, registry);
-  std::vector<std::string_view> known;
-  for (const MaterialDescription& m : description.materials) known.push_back(m.name.empty() ? m.plugin.name : m.name);
-  if (!names.empty()) {
-    std::ranges::fill(flags, 0);
-    for (const std::string& name : names) {
-      if (std::ranges::find(known, name) == known.end())
-        fail({}, "the scene has no material \"{}\"{}", name, suggestion(name, known));
-      for (size_t i = 0; i < known.size(); ++i) flags[i] |= known[i] == name;
-    }
-  }
-  if (std::ranges::count(flags, 0) == std::ssize(flags)) {
-    std::ranges::sort(known);
-    known.erase(std::ranges::unique(known).begin(), known.end());
-    fail({}, "no material of the scene is a leaf model: name the leaves by \"material\"; there are \"{}\"",
-         fmt::join(known, "\", \""));
-  }
-  return flags;
-}
-
 /// Replaces everything that costs time and has no effect on the structure.
 void simplify(const Registry& registry, const StructureRequest& request, SceneDescription& description) {
   for (MaterialDescription& m : description.materials) m.plugin = {"diffuse", m.plugin.where, {}};
@@ -134,16 +100,7 @@ struct StructureMeter::State {
 
   const Scene& scene() const { return loaded.scene(); }
   double target_area() const { return (target.x1 - target.x0) * (target.y1 - target.y0); }
-  /// Returns how often a point of the scene is in the column of the target.
-  double count_of(const Vec3& p) const {
-    const Vec3d at = to_double(p) + scene().origin();
-    const auto period = scene().period();
-    const auto along = [](const std::optional<Vec2>& v, float Vec2::*axis) {
-      return v ? std::optional(double((*v).*axis)) : std::nullopt;
-    };
-    return repetitions(at.x, target.x0, target.x1, along(period, &Vec2::x)) *
-           repetitions(at.y, target.y0, target.y1, along(period, &Vec2::y));
-  }
+  double count_of(const Vec3& p) const { return count_in_column(scene(), target, p); }
 };
 
 /// Accumulators of one block of rays and points.
@@ -213,8 +170,7 @@ class StructureMeter::Sums {
 
   /// Returns 1 if light from the direction `w` reaches the point, else 0.
   double is_lit(const RandomSurfacePoint& point, const Vec3& w, uint64_t key) const {
-    const Hit hit{.p = point.p, .ng = point.ng, .shading = {}, .at = {}, .extent = point.extent};
-    return state_.scene().occluded({offset_origin(hit, w), w}, key) ? 0 : 1;
+    return is_sunlit(state_.scene(), point, w, key) ? 1 : 0;
   }
 
   const State& state_;

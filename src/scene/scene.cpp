@@ -27,6 +27,10 @@ CameraSampling Scene::camera_sampling(const Sampler& sampler) const {
 
 bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   GeometryHit at;
+  return intersect(ray, key, point, at);
+}
+
+bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point, GeometryHit& at) const {
   if (!find_nearest(ray, key, at, point.hit)) return false;
   compute_point(at, point);
   return true;

@@ -74,6 +74,8 @@ class Scene final : public World {
   static void check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log);
 
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override;
+  /// Same, and also returns the indices of the hit.
+  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point, GeometryHit& at) const;
   bool occluded(const Ray& ray, uint64_t key) const override;
   uint32_t intersect(const RayPacket& packet, SurfacePoint* points) const override;
   uint32_t occluded(const RayPacket& packet) const override;

@@ -257,16 +257,16 @@ TEST_F(Radiometry, TheAlbedoOfRealLeavesIsTheSameBothWays) {
 }
 
 TEST_F(Radiometry, WhatLeavesAbsorbAddsUpToTheWhole) {
-  const FluxMeasurement measurement =
-      flux(kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2)),
-           {.period = kPlot, .wavelengths = "bands,wavelengths=450,550,650,750,850", .by_instance = true}, 50000);
+  const FluxMeasurement measurement = flux(
+      kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2)),
+      {.period = kPlot, .wavelengths = "bands,wavelengths=450,550,650,750,850", .organs = OrganKind::instance}, 50000);
   const auto leaf = std::ranges::find(measurement.materials, "leaf", &FluxMeasurement::OfMaterial::name);
   ASSERT_NE(leaf, measurement.materials.end());
   for (size_t band = 0; band < 5; ++band) {
     double sum = 0, variance = 0;
-    for (size_t i = band; i < measurement.by_instance.size(); i += 5) {
-      sum += measurement.by_instance[i].mean;
-      variance += std::pow(measurement.by_instance[i].standard_error, 2);
+    for (size_t i = band; i < measurement.by_organ.size(); i += 5) {
+      sum += measurement.by_organ[i].mean;
+      variance += std::pow(measurement.by_organ[i].standard_error, 2);
     }
     EXPECT_NEAR(sum, leaf->absorbed[band].mean, 1e-6);
     EXPECT_LT(std::sqrt(variance), 0.01);
@@ -291,13 +291,13 @@ TEST_F(Radiometry, FirstHitsScatterOneRayUnlessTheSceneSaysTwo) {
 
 TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
   const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
-  const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
+  const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .organs = OrganKind::instance};
   const FluxMeasurement one = flux(world, request, 5000, 1), three = flux(world, request, 5000, 3);
   EXPECT_EQ(one.reflected[0].mean, three.reflected[0].mean);
   EXPECT_EQ(one.reflected[1].standard_error, three.reflected[1].standard_error);
-  for (size_t i = 0; i < one.by_instance.size(); ++i) {
-    EXPECT_EQ(one.by_instance[i].mean, three.by_instance[i].mean);
-    EXPECT_EQ(one.by_instance[i].standard_error, three.by_instance[i].standard_error);
+  for (size_t i = 0; i < one.by_organ.size(); ++i) {
+    EXPECT_EQ(one.by_organ[i].mean, three.by_organ[i].mean);
+    EXPECT_EQ(one.by_organ[i].standard_error, three.by_organ[i].standard_error);
   }
   const BrfRequest views{.views = {{10, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"};
   EXPECT_EQ(brf(world, views, 16, 1).at(1, 0).mean, brf(world, views, 16, 3).at(1, 0).mean);
@@ -305,7 +305,7 @@ TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
 
 TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
   const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
-  const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
+  const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .organs = OrganKind::instance};
   const FluxMeasurement whole = flux(world, request, 5120);
   Session session(silent_log(), {2, {}, {}});
   const auto meter = [&](const FluxRequest& r) { return FluxMeter(session, description(world), r); };
@@ -320,11 +320,10 @@ TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
   second.trace(5120 - 2048, session.pool());
   EXPECT_EQ(second.read().reflected[1].mean, whole.reflected[1].mean);
   EXPECT_EQ(second.read().reflected[1].standard_error, whole.reflected[1].standard_error);
-  for (size_t i = 0; i < whole.by_instance.size(); ++i)
-    EXPECT_EQ(second.read().by_instance[i].mean, whole.by_instance[i].mean);
+  for (size_t i = 0; i < whole.by_organ.size(); ++i) EXPECT_EQ(second.read().by_organ[i].mean, whole.by_organ[i].mean);
 
   FluxRequest other = request;
-  other.by_instance = false;
+  other.organs = {};
   EXPECT_THAT(error_of([&] { meter(other).resume(file); }), HasSubstr("another measurement. command: "));
   const std::string bytes = read_file_bytes(file, {});
   const auto error_of_bytes = [&](std::string_view changed) {
@@ -379,8 +378,8 @@ TEST_F(Radiometry, WhatCannotBeMeasuredIsRefused) {
               }),
               HasSubstr("nothing stands in this scene"));
   EXPECT_THAT(error_of([&] {
-                flux(kSun + soil(0.1), {.period = kPlot, .wavelengths = "bands,wavelengths=450", .by_instance = true},
-                     1);
+                flux(kSun + soil(0.1),
+                     {.period = kPlot, .wavelengths = "bands,wavelengths=450", .organs = OrganKind::instance}, 1);
               }),
               HasSubstr("no instances of objects"));
   EXPECT_THAT(error_of([&] {

@@ -154,7 +154,7 @@ TEST_F(WeightedBands, AreTheSharesOfResponseTimesTheScenesLightInBrfAndFlux) {
       {sun("\"" + path("lamp.spd") + "\""), kLamp, {"nir", "par"}, {&kNir, &kPar}},
       {"LightSource \"infinite\" \"spectrum L\" \"" + path("lamp.spd") + "\"\n", kLamp, {"par"}, {&kPar}}};
   for (const Case& c : cases) {
-    const FluxMeasurement sent = flux(c.light, {.wavelengths = bands(c.names), .by_instance = true});
+    const FluxMeasurement sent = flux(c.light, {.wavelengths = bands(c.names), .organs = OrganKind::instance});
     const BrfMeasurement seen = brf(c.light, bands(c.names));
     ASSERT_EQ(sent.bands.size(), c.names.size());
     for (size_t b = 0; b < c.names.size(); ++b) {
@@ -169,7 +169,7 @@ TEST_F(WeightedBands, AreTheSharesOfResponseTimesTheScenesLightInBrfAndFlux) {
       // Every path carries one unit of the band's light; of an extended light up to the sum over its directions.
       EXPECT_NEAR(sent.sum[b].mean, 1, 2e-4);
       EXPECT_NEAR(sent.materials[0].uncollided[b].mean, 1, 2e-4);
-      EXPECT_NEAR(sent.by_instance[b].mean, absorbed.mean, 1e-6);
+      EXPECT_NEAR(sent.by_organ[b].mean, absorbed.mean, 1e-6);
       EXPECT_NEAR(seen.at(0, b).mean, expected, kZ * seen.at(0, b).standard_error + 1e-4);
     }
   }

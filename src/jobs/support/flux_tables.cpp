@@ -25,12 +25,11 @@ std::vector<Row> rows_of(const FluxMeasurement& measurement) {
   return rows;
 }
 
-/// Returns the column of an instance's absorption in a band: absorbed_550, absorbed_nir.
-std::string column_of(const Band& band) {
+}  // namespace
+
+std::string absorption_column(const Band& band) {
   return "absorbed_" + (band.name.empty() ? fmt::format("{:g}", band.nm) : band.name);
 }
-
-}  // namespace
 
 Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
@@ -76,13 +75,13 @@ Table instance_table(const FluxMeasurement& measurement, const std::optional<Pho
   add("area", [&](size_t i) { return double(measurement.areas[i]); });
   if (photons)
     add_measured("par_umol_m2_s", [&](size_t i) {
-      const MeanError share = photons->share(std::span(measurement.by_instance).subspan(i * bands, bands));
+      const MeanError share = photons->share(std::span(measurement.by_organ).subspan(i * bands, bands));
       const double factor = photons->incident * measurement.target_area / double(measurement.areas[i]);
       return MeanError{share.mean * factor, share.standard_error * factor};
     });
   for (size_t band = 0; band < bands; ++band)
-    add_measured(column_of(measurement.bands[band]),
-                 [&](size_t i) { return measurement.by_instance[i * bands + band]; });
+    add_measured(absorption_column(measurement.bands[band]),
+                 [&](size_t i) { return measurement.by_organ[i * bands + band]; });
   return table;
 }
 

@@ -13,6 +13,8 @@ namespace frond {
 Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons);
 /// Returns a text table with one row for each quantity and one column for each band.
 std::string share_text(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons);
+/// Returns the column of an instance's absorption in a band: absorbed_550, absorbed_nir.
+std::string absorption_column(const Band& band);
 /// Returns a table with one row for each instance: area, absorbed photon flux (umol / (m2 s)), and absorbed shares of
 /// the incident light. It is built by whole columns, because there may be 1e8 instances.
 Table instance_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons);

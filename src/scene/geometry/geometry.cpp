@@ -238,6 +238,7 @@ void Geometry::compute_hit(const RTCHit& at, const embree::Lane& lane, const Ray
   met.medium_interface = surface.medium_interface;
   met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
   met.primitive = at.primID;
+  met.shape = &surface;
 }
 
 uint32_t Geometry::occluded(const RayPacket& packet) const {

@@ -72,6 +72,7 @@ struct GeometryHit {
   uint32_t primitive = 0;           ///< index within the surface
   uint32_t medium_interface = 0;    ///< as in SurfacePoint
   uint64_t instance = 0;            ///< number of the instance, from 1; 0: the surface is not part of an object
+  const Surface* shape = nullptr;   ///< the surface, of the world or of the instance's object
 };
 
 struct GeometryObject;

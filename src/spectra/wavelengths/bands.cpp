@@ -26,9 +26,17 @@ constexpr Param kParams[] = {
      .doc = "Files of a sensor's responses, one for each band, or columns of a table (srf.csv:B4): a channel is the "
             "mean radiance under its response.",
      .list = true},
+    {.name = "ranges",
+     .kind = ParamKind::real,
+     .unit = "nm",
+     .range = kAllowed_nm,
+     .doc = "Pairs of first and last wavelengths, one for each band: its response is 1 between them.",
+     .list = true},
     {.name = "names",
      .kind = ParamKind::string,
-     .doc = "Names of the bands of \"responses\", for channels, columns and rows; by default those of the files.",
+     .doc =
+         "Names of the bands of \"responses\" or \"ranges\", for channels, columns and rows; by default those of the "
+         "files, or 400-700.",
      .list = true},
     {.name = "lambdamin",
      .kind = ParamKind::real,
@@ -69,12 +77,14 @@ std::vector<double> even_wavelengths(const Params& p) {
 }
 
 void check_choice(const Params& p) {
-  const bool listed = p.given("wavelengths"), sensor = p.given("responses");
+  const bool listed = p.given("wavelengths"), sensor = p.given("responses"), ranges = p.given("ranges");
   if (listed && sensor) fail(p.where("responses"), "\"wavelengths\" and \"responses\" exclude each other");
-  if (p.given("names") && !sensor)
+  if (ranges && (listed || sensor))
+    fail(p.where("ranges"), "\"ranges\" and \"{}\" exclude each other", listed ? "wavelengths" : "responses");
+  if (p.given("names") && !sensor && !ranges)
     fail(p.where("names"), "\"names\" are those of \"responses\": a single wavelength is its own name");
   for (const std::string_view name : {"lambdamin", "lambdamax", "step"})
-    if ((listed || sensor) && p.given(name))
+    if ((listed || sensor || ranges) && p.given(name))
       fail(p.where(name), "\"{}\" is for evenly spaced wavelengths: others are given", name);
 }
 
@@ -105,9 +115,11 @@ class Bands final : public WavelengthStrategy {
     const auto files = p.files("responses");
     if (!files.empty())
       read_responses(files, p);
+    else if (p.given("ranges"))
+      add_ranges(p);
     else if (has_reflected(p))
       for (const double nm : listed.empty() ? even : listed) bands_.push_back({nm});
-    const Location where = p.where(files.empty() ? "wavelengths" : "responses");
+    const Location where = p.where(!files.empty() ? "responses" : p.given("ranges") ? "ranges" : "wavelengths");
     check_single_wavelengths(bands_, where);
     reflected_ = bands_.size();
     add_fluorescence(p);
@@ -204,13 +216,32 @@ class Bands final : public WavelengthStrategy {
       response = without_margins(response);
       bands_.push_back({ResponseSampler(response, where).centroid_nm(), response, spectrum_name(file)});
     }
-    if (p.given("names")) rename(p.strings("names"), p.where("names"));
-    for (const Band& band : bands_) check_name(band.name, p.where(p.given("names") ? "names" : "responses"));
+    set_names(p, "responses");
+  }
+
+  void add_ranges(const Params& p) {
+    const std::vector<double> ends = p.reals("ranges");
+    if (ends.size() % 2 != 0)
+      fail(p.where("ranges"), "\"ranges\" takes pairs of wavelengths, as in 400,700,700,1100: {} were given",
+           ends.size());
+    for (size_t i = 0; i < ends.size(); i += 2) {
+      const double first = ends[i], last = ends[i + 1];
+      if (!(first < last)) fail(p.where("ranges"), "\"ranges\": {} to {} nm is empty", first, last);
+      bands_.push_back({(first + last) / 2, {{first, 1}, {last, 1}}, fmt::format("{}-{}", first, last)});
+    }
+    set_names(p, "ranges");
+  }
+
+  /// Replaces the names by "names", and checks them. `source`: the parameter that gives the bands.
+  void set_names(const Params& p, std::string_view source) {
+    const Location where = p.where(p.given("names") ? "names" : source);
+    if (p.given("names")) rename(p.strings("names"), where);
+    for (const Band& band : bands_) check_name(band.name, where);
     std::set<std::string_view> names;
     for (const Band& band : bands_)
       if (!names.insert(band.name).second)
-        fail(p.where(p.given("names") ? "names" : "responses"),
-             "two bands are named \"{}\": \"names\" gives each band a name of its own, as in names=red,nir", band.name);
+        fail(where, "two bands are named \"{}\": \"names\" gives each band a name of its own, as in names=red,nir",
+             band.name);
   }
 
   void rename(const std::vector<std::string>& names, const Location& where) {

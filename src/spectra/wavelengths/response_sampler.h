@@ -22,6 +22,8 @@ class ResponseSampler {
   Interval support_nm() const { return support_nm_; }
   /// Mean wavelength (nm), weighted by the response.
   double centroid_nm() const { return centroid_nm_; }
+  /// Integral of the response over the wavelength.
+  double integral() const { return cumulative_.back(); }
 
  private:
   std::vector<ResponsePoint> points_;

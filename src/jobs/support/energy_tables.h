@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "jobs/record/arguments.h"
+#include "radiometry/flux.h"
+#include "report/table.h"
+
+/// Bands and tables of the job flux by energy (--bands).
+namespace frond {
+
+/// A band of --bands.
+struct NamedRange {
+  std::string name;
+  Interval nm;
+};
+
+/// Returns the bands of --bands: par, nir, shortwave, all three of them, or NAME=FIRST:LAST. Throws InputError.
+std::vector<NamedRange> band_ranges(const Arguments& args);
+/// Returns the ranges, limited to those of the optics of surfaces, as a PluginText of `bands`.
+std::string bands_text(const std::vector<NamedRange>& ranges, Interval optics_nm);
+
+/// Returns a table with one row for each quantity and band: shares of the incident light, W/m^2 and umol/(m^2 s), also
+/// of direct and of diffuse light; albedo, and fAPAR for the band from 400 to 700 nm.
+Table energy_table(const FluxMeasurement& measurement);
+/// Returns a table of the leaf area: all, sunlit and shaded, with the light on it, for each unit of its area.
+Table leaf_table(const FluxMeasurement& measurement);
+/// Returns a table with one row for each organ: name, material, area, centre, and absorbed light: for each unit of its
+/// area if the measurement is by energy, else as shares of the incident light.
+Table organ_table(const FluxMeasurement& measurement, const Organs& organs);
+
+/// Returns fAPAR: the share of the photons from 400 to 700 nm that leaves absorb; nullopt without such a band or
+/// leaves.
+std::optional<MeanError> fapar(const FluxMeasurement& measurement);
+
+/// Writes a PLY file (binary, little endian) of all meshes. Faces have the light that their organ absorbs in each band,
+/// as properties NAME_w_m2 and NAME_umol_m2_s; the first band is also the property `quality`, and a colour of faces and
+/// vertices. Returns the number of surfaces that are left out, since they are no meshes. Throws InputError.
+size_t write_organ_ply(const std::string& path, const FluxMeasurement& measurement, const Organs& organs);
+
+}  // namespace frond

@@ -1,0 +1,97 @@
+#include "jobs/support/flux_energy.h"
+
+#include "leaf/tissue/constants.h"
+#include "scene/leaf_models.h"
+#include "system/atomic_file.h"
+
+namespace frond {
+namespace {
+
+/// Returns the wavelengths for which optics are known.
+Interval optics_range(const JobRun& run, const SceneDescription& description) {
+  constexpr Interval kAll{300, 2500};
+  const auto given = run.args.numbers("optics-range");
+  if (given.empty()) {
+    const auto leaves = leaf_flags(description, run.session().registry());
+    return std::ranges::find(leaves, 1) == leaves.end() ? kAll : leaf::kConstantsRange_nm;
+  }
+  const Interval nm{given[0], given[1]};
+  if (!(nm.max - nm.min >= 1 && kAll.contains(nm.min) && kAll.contains(nm.max)))
+    fail({}, "{}: {:g} to {:g} nm is not a range within 300 to 2500 nm", run.args.spelled("optics-range"), nm.min,
+         nm.max);
+  return nm;
+}
+
+}  // namespace
+
+/// The description is needed: a leaf model has constants from 360 nm on, other materials have data of their own.
+void set_bands(const JobRun& run, const SceneDescription& description, FluxRequest& request) {
+  const std::vector<NamedRange> ranges = band_ranges(run.args);
+  const Interval optics = optics_range(run, description);
+  request.wavelengths = bands_text(ranges, optics);
+  request.ranges_nm.clear();
+  for (const NamedRange& range : ranges) {
+    request.ranges_nm.push_back(range.nm);
+    if (!optics.contains(range.nm.min) || !optics.contains(range.nm.max))
+      run.log().info(
+          fmt::format("band {} has light beyond {:g} to {:g} nm, for which optics are known: it meets those at "
+                      "the ends",
+                      range.name, optics.min, optics.max));
+  }
+}
+
+void explain_no_leaves(const JobRun& run, const EnergyBudget& energy) {
+  if (energy.leaves.absorbed.empty())
+    run.log().info(fmt::format("no fAPAR, no sunlit leaves: no material is a leaf model; {} names the leaves",
+                               run.args.spelled("material")));
+  else if (energy.sunlit.absorbed.empty())
+    run.log().info("no sunlit leaves: the scene has no sun above the horizon, or several");
+}
+
+/// Albedo and fAPAR are single values of JSON, too, since they are what is asked for most.
+Result energy_result(const FluxMeasurement& measurement) {
+  const EnergyBudget& energy = *measurement.energy;
+  Result result{.tables = {energy_table(measurement)}};
+  result.text = to_text(result.tables[0]);
+  for (size_t band = 0; band < energy.reflected.size(); ++band) {
+    const MeanError& albedo = energy.reflected[band].energy.total;
+    result.facts.push_back({"albedo_" + measurement.bands[band].name, albedo.mean});
+    result.facts.push_back({"albedo_" + measurement.bands[band].name + "_se", albedo.standard_error});
+  }
+  if (const auto share = fapar(measurement)) {
+    result.facts.push_back({"fapar", share->mean});
+    result.facts.push_back({"fapar_se", share->standard_error});
+  }
+  if (energy.leaves.absorbed.empty()) return result;
+  result.tables.push_back(leaf_table(measurement));
+  result.text += '\n' + to_text(result.tables[1]);
+  return result;
+}
+
+/// A list, because a PlannedOutput cannot be moved. Tables that the measurement turns out not to have, as of leaves,
+/// are planned too.
+std::list<PlannedOutput> planned_tables(const Arguments& args) {
+  std::list<PlannedOutput> planned;
+  const std::string csv = args.text("csv");
+  if (csv.empty() || csv == "-") return planned;
+  std::vector<std::pair<const char*, const char*>> tables;  // name, and what it is in messages
+  const bool by_energy = args.given("bands");
+  if (args.given("by")) tables.emplace_back(by_energy ? "energy" : "flux", by_energy ? "energy" : "shares");
+  if (by_energy) tables.emplace_back("leaves", "leaves");
+  for (const auto& [name, what] : tables) {
+    const std::string path = csv_beside(csv, name);
+    planned.emplace_back(fmt::format("the table of {} beside {}", what, args.spelled("csv")), path);
+    check_replaceable(path);
+  }
+  return planned;
+}
+
+void write_ply(const JobRun& run, const FluxMeasurement& measurement, const Organs& organs) {
+  if (!run.args.given("ply")) return;
+  const size_t others = write_organ_ply(binary_file_of(run.args, "ply"), measurement, organs);
+  if (others > 0)
+    run.log().warn({}, fmt::format("{}: {} surfaces are left out, since they are no meshes of triangles",
+                                   run.args.spelled("ply"), others));
+}
+
+}  // namespace frond
