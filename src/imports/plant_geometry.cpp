@@ -135,7 +135,7 @@ size_t PlantGeometry::instance_count() const {
 }
 
 /// Single meshes are joined by material: a model with a group for each leaf would else be thousands of files.
-PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world) {
+PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world, bool keeps_objects) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   PlantGeometry geometry{.least = {kInfinity, kInfinity, kInfinity}, .most = {-kInfinity, -kInfinity, -kInfinity}};
   geometry.origin = to_world.vector({scene.origin[0], scene.origin[1], scene.origin[2]});
@@ -153,8 +153,9 @@ PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world
   using Key = std::tuple<uint32_t, bool, bool>;  // material, with normals, with texture coordinates
   std::map<Key, PlantMesh> joined;
   for (const auto& [meshes, nodes] : uses) {
-    if (nodes.size() > 1) {
-      geometry.objects.push_back(object_of(scene, meshes, scene.meshes[meshes.front()].name));
+    if (nodes.size() > 1 || keeps_objects) {
+      const std::string &of_mesh = scene.meshes[meshes.front()].name, &of_node = scene.nodes[nodes.front()].name;
+      geometry.objects.push_back(object_of(scene, meshes, nodes.size() > 1 || of_node.empty() ? of_mesh : of_node));
       for (const size_t i : nodes) geometry.objects.back().instances.push_back(maps[i]);
       continue;
     }

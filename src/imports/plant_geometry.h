@@ -56,8 +56,9 @@ struct PlantGeometry {
   size_t instance_count() const;
 };
 
-/// Returns the geometry of all nodes under `to_world`. Throws InputError if there is none, or if coordinates are beyond
-/// what frond renders.
-PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world);
+/// Returns the geometry of all nodes under `to_world`. With `keeps_objects` no meshes are joined: the meshes of each
+/// node are an object with the node's name. Throws InputError if there is none, or if coordinates are beyond what frond
+/// renders.
+PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world, bool keeps_objects = false);
 
 }  // namespace frond

@@ -310,7 +310,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   ImportedScene scene = read_model(options.model);
   add_geometry_losses(scene);
   for (const std::string& warning : scene.warnings) log.warn({}, warning);
-  PlantGeometry geometry = plant_geometry(scene, to_scene(options));
+  PlantGeometry geometry = plant_geometry(scene, to_scene(options), options.keeps_objects);
   warn_of_steps(geometry, log);
   if (geometry.flat_nodes > 0)
     log.warn({}, fmt::format("{} no inverse", counted(geometry.flat_nodes, "node is left out: its transform has",

@@ -16,6 +16,7 @@ struct ImportOptions {
   std::vector<MaterialRule> rules = {};
   double scale = 1;                            ///< scene units for one unit of the model
   bool z_is_up = false;                        ///< in the model; false: y
+  bool keeps_objects = false;                  ///< as plant_geometry
   std::vector<std::string> single_sided = {};  ///< patterns of material names whose second sheets are removed
 };
 

@@ -40,6 +40,9 @@ constexpr JobParam kParams[] = {
     JobParam("scale", real, "Metres for one unit of the model.", {.range = {1e-12, 1e12}}),
     JobParam("up", text, "Axis that is up in the model; z is up in the scene. By default y, glTF's axis.",
              {.type = "AXIS", .choices = kAxes}),
+    JobParam("objects", flag,
+             "Keep each object of the model as an object of the scene with its name, which frond flux --by instance "
+             "measures. By default the meshes of a material are joined."),
     JobParam("single-sided", texts,
              "Material, by name with * and ?, whose leaves are two sheets, front and back: remove the second sheet.",
              {.type = "NAME"}),
@@ -169,6 +172,7 @@ Result import_model(const JobRun& run) {
   ImportOptions options{.model = run.args.text("model"), .scene = run.args.text("output"), .rules = rules_of(run)};
   options.scale = scale_of(run);
   options.z_is_up = run.args.text("up") == "z";
+  options.keeps_objects = run.args.flag("objects");
   options.single_sided = run.args.texts("single-sided");
   const auto accept = [&](const ImportSummary& found) {
     report_assumptions(run, options, found);

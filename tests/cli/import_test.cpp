@@ -246,6 +246,31 @@ TEST_F(ImportCommand, GltfNodesAreInstances) {
   }
 }
 
+/// Two leaves of one material, each an object, and its light by name, by part and, with a stem, by material.
+TEST_F(ImportCommand, ObjectsAreKeptByNameForTheirLight) {
+  folder_.write("two.obj",
+                "mtllib two.mtl\no lower\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl green\nf 1 2 3 4\n"
+                "o upper\nv 0 0 1\nv 0.5 0 1\nv 0.5 1 1\nv 0 1 1\nf 5 6 7 8\n");
+  folder_.write("two.mtl", "newmtl green\nKd 0.1 0.5 0.1\n");
+  const auto rows = [this](const Words& how, const std::string& by) {
+    imported("two.obj", joined({"--up", "z", "--unit", "m", "--leaf", "green=leaf_lambert,specimen=soybean"}, how));
+    const Outcome o = frond_command({"flux", path("scene.pbrt"), "--bands", "par", "--by", by, "--irradiance",
+                                     "solar-am1.5-global", "--paths", "20000", "--csv", path("organs.csv"), "-q",
+                                     "--no-cache", "--ply", path("organs.ply")});
+    EXPECT_EQ(o.code, 0) << o.err;
+    std::ifstream csv(path("organs.csv"));
+    return std::string(std::istreambuf_iterator<char>(csv), {});
+  };
+  EXPECT_THAT(rows({"--objects"}, "instance"),
+              ::testing::ContainsRegex("^instance,name,material_name,area,x,y,z,par_w_m2,.*\n"
+                                       "1,lower,green,1,0.5,0.5,0,[1-9].*\n2,upper,green,0.5,0.25,0.5,1,[1-9]"));
+  EXPECT_THAT(
+      rows({}, "part"),
+      ::testing::ContainsRegex("^part,name,.*\n1,green,green,0,1,0.5,0.5,0,[1-9].*\n2,green,green,0,0.5,0.25,0.5,1,"));
+  EXPECT_THAT(rows({}, "mesh"), ::testing::ContainsRegex("^mesh,.*\n1,green,green,0,1.5,"));
+  EXPECT_TRUE(fs::exists(path("organs.ply")));
+}
+
 TEST_F(ImportCommand, ManyInstancesAreATable) {
   std::string children, nodes;
   for (int i = 1; i <= 1500; ++i) {
