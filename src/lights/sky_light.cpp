@@ -10,6 +10,7 @@
 #include "lights/light_params.h"
 #include "lights/sky_model.h"
 #include "lights/sky_spectra.h"
+#include "lights/station.h"
 #include "spectra/cie.h"
 #include "spectra/tabulated.h"
 
@@ -303,6 +304,9 @@ constexpr Param kSky[] = {
      .default_value = 172,
      .range = {1, 366},
      .doc = "Day of the year, for the distance of the sun; 172 is 21 June."},
+    kGlobalIrradiance,
+    kDiffuseIrradiance,
+    kDirectNormalIrradiance,
     {.name = "scale",
      .kind = ParamKind::real,
      .default_value = 1.0,

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "lights/station.h"
 
 namespace frond {
 namespace {
@@ -50,12 +51,31 @@ SkyModel::SkyModel(const Params& p) : toward_sun(frond::toward_sun(p)), is_overc
     if (is_night) diffuse[i] = 0;
     if (is_night || is_overcast) direct_normal[i] = 0;
   }
+  if (!is_night) scale_to_measured(p);
   if (p.given("cietype"))
     shape = cie_sky(p.integer("cietype"));
   else if (is_overcast || !(diffuse_total() > 0))
     shape = cie_sky(kCieOvercast);
   else
     shape = perez_sky(zenith, integral(nm, direct_normal), integral(nm, diffuse));
+}
+
+/// The sun keeps its spectrum. Diffuse light keeps the spectrum of the model's sky as far as that reaches; the rest,
+/// light of clouds, has that of the model's sun and sky together, as the overcast sky.
+void SkyModel::scale_to_measured(const Params& p) {
+  constexpr double kSolarConstant = 1361;  // W/m^2
+  const SplitIrradiance model{direct_total(), diffuse_total()};
+  const auto measured =
+      measured_irradiance(p, model, toward_sun.z, kSolarConstant * sun_distance_factor(p.integer("day")));
+  if (!measured) return;
+  const double of_sun = model.direct > 0 ? measured->direct / model.direct : 0;
+  const double of_sky = model.diffuse > 0 ? std::min(measured->diffuse / model.diffuse, 1.0) : 0;
+  const double of_clouds = std::max(0.0, measured->diffuse - model.diffuse) / (model.direct + model.diffuse);
+  for (size_t i = 0; i < nm.size(); ++i) {
+    const double global = direct_normal[i] * toward_sun.z + diffuse[i];
+    diffuse[i] = diffuse[i] * of_sky + global * of_clouds;
+    direct_normal[i] *= of_sun;
+  }
 }
 
 double SkyModel::horizon_factor() const {

@@ -26,6 +26,9 @@ struct SkyModel {
   /// Irradiance of the sun on a horizontal plane, W m^-2.
   double direct_total() const { return integral(nm, direct_normal) * std::max(0.0, toward_sun.z); }
   double diffuse_total() const { return integral(nm, diffuse); }
+
+ private:
+  void scale_to_measured(const Params& p);
 };
 
 /// Returns the integrals over the upper hemisphere of a sky's shape: of its radiance times the cosine, and of its
