@@ -9,7 +9,6 @@
 #include "core/messages/excerpt.h"
 #include "spectra/named.h"
 #include "spectra/spectra_text.h"
-#include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
 #include "system/text_table.h"
 

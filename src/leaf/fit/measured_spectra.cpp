@@ -11,7 +11,6 @@
 #include "leaf/tissue/constants.h"
 #include "spectra/spectra_text.h"
 #include "spectra/tabulated.h"
-#include "spectra/wavelength_column.h"
 #include "system/file_bytes.h"
 #include "system/text_table.h"
 
