@@ -81,6 +81,7 @@ class LeafSolved final : public Material, public FluorescentMaterial {
   std::shared_ptr<const Fluorescence> fluorescence(const Preparation& preparation) const override {
     if (file_.is_given()) return only_matrix_fluorescence(leaf_, preparation.log);
     if (auto given = matrix_fluorescence(leaf_, preparation.log)) return given;
+    if (leaf_.tissue().fluorescence == 0) return only_matrix_fluorescence(leaf_, preparation.log);  // black
     leaf_.refuse_varying_fluorescence();
     if (leaf_.tissue().fluorescence == 0) return std::make_shared<const MatrixFluorescence>(nullptr);
     const auto make = [&] { return leaf::FluorescenceTable(leaf_.tissue(), preparation.pool); };

@@ -32,5 +32,7 @@ Theme skies();
 Theme media();
 /// Material "measured": valid and invalid goniometer tables, and a tensor file to the horizon.
 Theme measured();
+/// Fluorescence: no and much chlorophyll, yields 0 and 1, grazing light, excitation within the emission.
+Theme fluorescence();
 
 }  // namespace frond::stability

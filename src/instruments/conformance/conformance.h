@@ -35,6 +35,7 @@ enum class Law : uint8_t {
                   ///< theta|
   streams,        ///< not exact: the noise of f is drawn from its stream, not from its directions
   coverage,       ///< `pdf` is positive wherever f is
+  fluorescence,   ///< no more photons leave than are absorbed, none of much more energy; f integrates to their number
 };
 
 /// Name and text of a law in reports.
@@ -44,7 +45,7 @@ struct LawInfo {
 };
 
 /// In the order of the enumeration.
-inline constexpr std::array<LawInfo, 12> kLaws{{
+inline constexpr std::array<LawInfo, 13> kLaws{{
     {Law::parameters, "parameters", "every declared parameter is read and no other; the values are accepted"},
     {Law::sampling, "sampling", "exact BSDFs: sample's directions follow pdf"},
     {Law::agreement, "agreement", "exact BSDFs: a sample's f and pdf are those of f() and pdf()"},
@@ -57,6 +58,7 @@ inline constexpr std::array<LawInfo, 12> kLaws{{
     {Law::unbiasedness, "unbiasedness", "other BSDFs: sample's mean weights are the integrals of f |cos theta|"},
     {Law::streams, "streams", "other BSDFs: the noise of f comes from its stream, not from directions"},
     {Law::coverage, "coverage", "pdf is positive wherever f is"},
+    {Law::fluorescence, "fluorescence", "no more photons leave than are absorbed, none of much more energy"},
 }};
 /// Name of a law, as in kLaws.
 std::string_view law_name(Law law);

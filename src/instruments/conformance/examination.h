@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/fluorescence.h"
 #include "core/parallel.h"
 #include "instruments/conformance/conformance.h"
 #include "instruments/cubature.h"
@@ -167,6 +168,10 @@ void check_retired_lanes(const Bsdf& bsdf, const SampledWavelengths& lambda, con
                          Findings& findings);
 void check_edge_cases(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
 void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
+
+/// Laws of the fluorescence of a material.
+void check_fluorescence(const Fluorescence& fluorescence, const std::string& where, const ExaminationEffort& effort,
+                        Findings& findings);
 
 /// Runs `test`. A logic error, a runtime error or an object that a BSDF or a material throws becomes a finding of
 /// Law::values. InputError, Stopped and other exceptions, such as those of a caller's Python code, pass through.

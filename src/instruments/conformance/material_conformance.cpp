@@ -78,6 +78,14 @@ void examine_set(const MaterialInfo& info, const ParameterSet& set, bool must_wo
     const Findings more = examine(*bsdf, lambda, claims, effort, where);
     findings.insert(findings.end(), more.begin(), more.end());
   });
+  if (const auto* fluorescent = dynamic_cast<const FluorescentMaterial*>(material.get())) {
+    std::shared_ptr<const Fluorescence> fluorescence;
+    try {
+      fluorescence = fluorescent->fluorescence(how.preparation);
+    } catch (const InputError&) {  // not computed with these parameters
+    }
+    if (fluorescence) run_guarded(where, findings, [&] { check_fluorescence(*fluorescence, where, effort, findings); });
+  }
   const std::string tilted = where + ", under a tilted shading normal";
   run_guarded(tilted, findings, [&] {
     if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
