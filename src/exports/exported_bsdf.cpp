@@ -3,6 +3,7 @@
 #include "core/bsdf.h"
 #include "instruments/beam.h"
 #include "instruments/given_wavelengths.h"
+#include "leaf/tissue/leaf_numbers.h"
 
 namespace frond {
 namespace {
@@ -50,6 +51,17 @@ std::vector<std::vector<double>> split_into_lanes(const std::vector<double>& wav
     runs.back().push_back(nm);
   }
   return runs;
+}
+
+const ParsedParam* fluorescence_of(const ParsedPlugin& leaf) {
+  for (const ParsedParam& given : leaf.params) {
+    const leaf::LeafNumber* number = leaf::find_leaf_number(given.name);
+    const auto* values = std::get_if<std::vector<double>>(&given.values);
+    const bool is_yield =
+        number && number->action == leaf::LeafAction::emission && !(values && *values == std::vector{0.0});
+    if (is_yield || given.name == "fluorescencematrices") return &given;
+  }
+  return nullptr;
 }
 
 }  // namespace frond

@@ -53,4 +53,7 @@ class ExportedBsdf {
 /// Splits wavelengths into groups of up to four, in order.
 std::vector<std::vector<double>> split_into_lanes(const std::vector<double>& wavelengths_nm);
 
+/// Returns the parameter with which a leaf fluoresces, which exported files do not hold; nullptr: none.
+const ParsedParam* fluorescence_of(const ParsedPlugin& leaf);
+
 }  // namespace frond

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/messages/problems.h"
+#include "exports/exported_bsdf.h"
 #include "exports/format.h"
 #include "exports/mitsuba/scene_export.h"
 #include "instruments/given_wavelengths.h"
@@ -155,6 +156,10 @@ Result export_material(const JobRun& run) {
     return prepared_material(material, session.registry(), GivenWavelengths({nm.begin(), nm.end()}), session.pool(),
                              run.log(), run.context.options().cache, keep_energy);
   };
+  if (const auto words = parse_material(material, session.registry());
+      const ParsedParam* given = fluorescence_of(words.plugin))
+    run.log().warn({}, fmt::format("\"{}\" is left out: {} {} holds no fluorescence", given->name,
+                                   args.spelled("format"), format.name));
   const uint64_t seed = hash_key(args.seed("seed"), material_seed(material));
   write_text(args.text("output"), format.write({material, prepare, seed, session.pool(), run.log()}, request));
   return {};

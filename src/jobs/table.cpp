@@ -118,6 +118,10 @@ TableLeaf leaf_of(const JobRun& run) {
   std::map<std::string, std::string> given;
   for (const auto& [name, value] : leaf.params) {
     check_is_of_leaf(name, run.args);
+    if ((name == "fluorescence" || name == "fluorescencematrices") && value != "0")
+      run.log().warn({}, fmt::format("\"{}\" is left out: a table holds no fluorescence; frond spectrophotometer "
+                                     "--fluorescence writes matrices, which every leaf takes by fluorescencematrices",
+                                     name));
     if (const auto [first, is_new] = given.emplace(name, value); !is_new)
       fail({}, "\"{}\" is given twice, as {} and as {}", name, first->second, value);
   }

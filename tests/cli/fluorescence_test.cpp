@@ -12,6 +12,7 @@ namespace frond {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 Outcome measured(const std::string& material, std::vector<std::string> more) {
   more.insert(more.begin(), {"spectrophotometer", material, "--fluorescence", "--no-cache"});
@@ -126,6 +127,29 @@ TEST(FluorescenceCommand, MeasuresDirections) {
     sides[0] = sides[1] = 0;
   }
   EXPECT_GT(noisy, 90);  // at grazing angles few walks of 100 leave
+}
+
+TEST(FluorescenceCommand, FilesForOthersNameWhatTheyLeaveOut) {
+  const TestFolder folder("fluorescence_exports");
+  const std::string out = folder.name_of("t.csv");
+  EXPECT_THAT(frond_command({"table", "fluorescence=0.01", "--wavelengths", "551", "-o", out}).err,
+              HasSubstr("\"fluorescence\" is left out: a table holds no fluorescence"));
+  EXPECT_THAT(frond_command({"export", "leaf_solved,fluorescence=0.01", "--format", "csv", "--wavelengths", "551",
+                             "--angles", "30", "--view-angles", "30", "--view-azimuths", "0", "--no-cache", "-o", out})
+                  .err,
+              HasSubstr("\"fluorescence\" is left out: --format csv holds no fluorescence"));
+  const std::string matrices =
+      folder.write("m.csv", "excitation_nm,emission_nm,Mb,Mf\n400,640,0,0\n400,850,0,0\n750,640,0,0\n750,850,0,0\n");
+  for (const auto& [leaf, name] :
+       {std::pair<std::string, std::string>{"\"leaf_solved\" \"float fluorescence\" 0.01", "fluorescence"},
+        {"\"leaf_lambert\" \"string fluorescencematrices\" \"m.csv\"", "fluorescencematrices"}}) {
+    const std::string scene =
+        folder.write("s.pbrt", "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nMaterial " + leaf +
+                                   "\nShape \"sphere\"\n");
+    EXPECT_THAT(frond_command({"export", scene, "--format", "mitsuba", "--no-cache", "-o", folder.name_of(name)}).err,
+                HasSubstr("\"" + name + "\" is left out: Mitsuba renders no fluorescence"));
+  }
+  EXPECT_THAT(bytes_of(folder.name_of("fluorescence/scene.xml")), Not(HasSubstr("name=\"fluorescence\"")));
 }
 
 TEST(FluorescenceCommand, SaysWhatIsMissing) {

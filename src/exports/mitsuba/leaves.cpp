@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "exports/exported_bsdf.h"
 #include "exports/mitsuba/materials.h"
 #include "exports/mitsuba/textures.h"
 #include "instruments/beam.h"
@@ -18,6 +19,12 @@ constexpr std::array kRefused{"pigments", "pigmentconcentrations", "tablefile", 
 
 /// True if the list has the name.
 bool contains(const auto& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); }
+
+/// Mitsuba renders no fluorescence.
+void warn_of_fluorescence(Context& context, const ParsedPlugin& leaf) {
+  if (const ParsedParam* given = fluorescence_of(leaf))
+    context.warn(given->where, fmt::format("\"{}\" is left out: Mitsuba renders no fluorescence", given->name));
+}
 
 /// A hit on the front of a flat leaf, or at the texture coordinates of a texel.
 Hit hit_at(Vec2 uv) {
@@ -44,6 +51,7 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
                  fmt::format("\"{}\" becomes Mitsuba's frond_leaf, which is leaf_solved of the same leaf; "
                              "--swap \"*=leaf_solved\" renders it in frond",
                              plugin.name));
+  warn_of_fluorescence(context, plugin);
   bool has_image = false;
   const Element bsdf(xml, "bsdf", {{"type", "frond_leaf"}, {"id", id}});
   if (context.spectra.variants() != Variants::spectral)
@@ -55,7 +63,7 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
     if (name == "tolerance") xml.number(name, p.real(name));
     if (leaf::find_plate_number(name)) xml.number(name, p.real(name));
     const leaf::LeafNumber* number = leaf::find_leaf_number(name);
-    if (!number) continue;
+    if (!number || number->action == leaf::LeafAction::emission) continue;
     FloatValue value;
     if (number->takes_texture)
       value = float_value(context, plugin, p, name);
@@ -78,6 +86,7 @@ bool write_leaf(Context& context, Xml& xml, const Materials::Source& source) {
 /// are images with the texels of the largest one.
 bool write_lambertian_leaf(Context& context, Xml& xml, const Materials::Source& source) {
   const auto& [plugin, p, id, index] = source;
+  warn_of_fluorescence(context, plugin);
   std::vector<std::string_view> varied;
   for (const ParsedParam& given : plugin.params)
     if (given.type == "texture") varied.push_back(given.name);
