@@ -12,7 +12,7 @@ import numpy
 import pandas
 
 from .shared import charts
-from .shared.tools import arguments, machine, program_csv, table, write_section
+from .shared.tools import arguments, machine, program, program_csv, table, write_section
 
 LEAVES = {"shared_cab20": "20 µg/cm² of chlorophyll", "shared_cab40": "40 µg/cm²", "shared_cab80": "80 µg/cm²"}
 YIELD = 0.01  # of the reference
@@ -154,6 +154,8 @@ def main():
             body.append([title, f"{max(low, 645)} to {min(high, 845)}", off(name, "Mb", low, high), off(name, "Mf", low, high),
                          off(name, "both", low, high)])
         pairs.append([title, *(at(name, *pair) for pair in chosen)])
+    program("goniophotometer", "abm,fluorescence=0.01", "--with", "leaf_solved,fluorescence=0.01", "--fluorescence", "-q",
+            "--rays", "1e4" if options.quick else "1e6", "--plot", options.docs / "images/fluorescence/directions.svg")
     write_section(options.docs / "fluorescence.md", "fluorescence", f"""## Comparison with plates
 
 Measured by `measurements/run fluorescence` on {machine()}, with matrices of the model Fluspect (SCOPE 2.x,

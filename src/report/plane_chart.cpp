@@ -25,13 +25,18 @@ std::vector<ChartPoint> plane_points(const GoniophotometerMeasurement& r, bool r
   return points;
 }
 
+std::string_view side_of(const GoniophotometerMeasurement& r, bool reflected) {
+  if (!r.fluorescence.empty()) return reflected ? "Lit side" : "Other side";
+  return reflected ? "Reflected" : "Transmitted";
+}
+
 /// Returns a panel with the vertical lines of one angle of incidence. y extends to the largest f of all measurements.
 Panel empty_panel(const std::vector<LabelledPatches>& measurements, double theta_deg, bool reflected) {
   double top = 0;
   for (const auto& [material, r] : measurements)
     for (const ChartPoint& p : plane_points(r, reflected)) top = std::max(top, 1.08 * p.y);
   const double mirror = std::min(theta_deg, 180 - theta_deg), high = top > 0 ? top : 1;
-  const std::string title = fmt::format("{} light at θ = {:g}°", reflected ? "Reflected," : "Transmitted,", theta_deg);
+  const std::string title = fmt::format("{}, light at θ = {:g}°", side_of(measurements[0].measurement, reflected), theta_deg);
   const Axis x{"angle from the normal (°), light’s side negative", {-90, 90}, false, 30},
       y{name_of_f(measurements[0].measurement, reflected ? "BRDF" : "BTDF"), {0, high}};
   Panel panel{420, 320, title, x, y};
