@@ -36,7 +36,8 @@ Panel empty_panel(const std::vector<LabelledPatches>& measurements, double theta
   for (const auto& [material, r] : measurements)
     for (const ChartPoint& p : plane_points(r, reflected)) top = std::max(top, 1.08 * p.y);
   const double mirror = std::min(theta_deg, 180 - theta_deg), high = top > 0 ? top : 1;
-  const std::string title = fmt::format("{}, light at θ = {:g}°", side_of(measurements[0].measurement, reflected), theta_deg);
+  const std::string title =
+      fmt::format("{}, light at θ = {:g}°", side_of(measurements[0].measurement, reflected), theta_deg);
   const Axis x{"angle from the normal (°), light’s side negative", {-90, 90}, false, 30},
       y{name_of_f(measurements[0].measurement, reflected ? "BRDF" : "BTDF"), {0, high}};
   Panel panel{420, 320, title, x, y};
