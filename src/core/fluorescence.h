@@ -74,11 +74,25 @@ inline size_t first_fluorescence_band(const WavelengthStrategy& wavelengths) {
   return static_cast<size_t>(std::ranges::find_if(bands, is_of_fluorescence) - bands.begin());
 }
 
-/// Base of the integrators that compute bands of fluorescence, beside Integrator; asked for by dynamic_cast.
+/// Base of the wavelength strategies of colours that can show fluorescence, beside WavelengthStrategy.
+class FluorescenceColors {
+ public:
+  virtual ~FluorescenceColors() = default;
+  /// Whether paths add the fluorescence at their wavelengths to what surfaces reflect.
+  virtual bool adds_fluorescence() const = 0;
+};
+
+/// Whether paths carry fluorescence: in bands of its own, or added to colours.
+inline bool has_fluorescence(const WavelengthStrategy& wavelengths) {
+  const auto* colors = dynamic_cast<const FluorescenceColors*>(&wavelengths);
+  return (colors && colors->adds_fluorescence()) || std::ranges::any_of(wavelengths.bands(), is_of_fluorescence);
+}
+
+/// Base of the integrators that compute fluorescence, beside Integrator; asked for by dynamic_cast.
 class FluorescenceIntegrator {
  public:
   virtual ~FluorescenceIntegrator() = default;
-  /// Called once, before Integrator::prepare, if the wavelengths have bands of fluorescence. `by_material`: by
+  /// Called once, before Integrator::prepare, if paths carry fluorescence (has_fluorescence). `by_material`: by
   /// SurfacePoint::material_id; nullptr: the material emits nothing.
   virtual void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) = 0;
 };

@@ -29,14 +29,15 @@ class FluorescenceTracer final : public Tracer {
         settings_(settings),
         materials_(materials),
         reflected_(std::move(reflected)),
+        has_colors_(world.wavelengths().bands().empty()),
         first_band_(first_fluorescence_band(world.wavelengths())) {}
 
   void trace(PathBundle& bundle) override {
     uint32_t emitted = 0;
     for (const size_t i : LaneSet(bundle.wanted))
-      if (bundle.lambda[i].band[0] >= first_band_) emitted |= 1u << i;
+      if (bundle.lambda[i].band[0] >= first_band_) emitted |= 1u << i;  // all, if there are no bands
     const uint32_t wanted = bundle.wanted;
-    if (const uint32_t others = wanted & ~emitted) {
+    if (const uint32_t others = has_colors_ ? wanted : wanted & ~emitted) {
       bundle.wanted = others;
       reflected_->trace(bundle);
       bundle.wanted = wanted;
@@ -51,7 +52,7 @@ class FluorescenceTracer final : public Tracer {
  private:
   /// One path at the wavelengths of emission.
   void trace_emission() {
-    result().reset();
+    if (!has_colors_) result().reset();
     ray_ = bundle_->rays[lane_];
     lambda_ = bundle_->lambda[lane_];
     throughput_ = SampledSpectrum(1);
@@ -63,7 +64,7 @@ class FluorescenceTracer final : public Tracer {
       key_ = vertex_key(bundle_->keys[lane_], uint64_t(vertex_));
       ++bundle_->traced;
       if (!world_.intersect(ray_, key_.key(Use::ray), point)) {
-        result().escaped = true;
+        if (!has_colors_) result().escaped = true;
         return;
       }
       arena_.reset();
@@ -78,7 +79,7 @@ class FluorescenceTracer final : public Tracer {
       set_leaving_ray(point.hit, ray_.d, ray_);
       return true;
     }
-    if (depth_ == 0) set_first_hit(point, result().first);
+    if (depth_ == 0 && !has_colors_) set_first_hit(point, result().first);
     if (depth_ >= settings_.max_depth) return false;
     if (const EmittingMaterials::Emitter* emitter = materials_.find(point.material_id)) gather(point, *emitter);
     LocalBsdf local;
@@ -98,7 +99,8 @@ class FluorescenceTracer final : public Tracer {
     RandomStream random = key_.stream(Use::roulette);
     if (depth_ + 1 >= kSafeScatterings && !survives_roulette(throughput_.max() * eta_scale_, 1, random, throughput_))
       return false;
-    result().scatterings = ++depth_;
+    ++depth_;
+    if (!has_colors_) result().scatterings = depth_;
     return true;
   }
 
@@ -189,84 +191,100 @@ class FluorescenceTracer final : public Tracer {
     return ArrivingLight{sample->wi, factor * sample->radiance * (weight / light_pdf)};
   }
 
-  /// Returns the radiance that arrives from `wi` at wavelengths of excitation: path tracing with light sampling.
-  /// `scatter_pdf`: density of this direction, for MIS.
-  SampledSpectrum excite(const SurfacePoint& from, const Vec3& wi, SampledWavelengths lambda, float scatter_pdf) {
-    SampledSpectrum sum, throughput(1);
-    Ray ray = ray_;
-    LightSelector::LitPoint previous;
-    const auto leave = [&](const SurfacePoint& point, const Vec3& direction) {
+  /// A path at wavelengths of excitation.
+  struct ExcitationPath {
+    Ray ray;
+    SampledWavelengths lambda;
+    float scatter_pdf;  ///< density of the last direction, for MIS; infinite if no light sample competes
+    int depth;          ///< scattering events since the camera
+    SampledSpectrum throughput{1}, radiance{};
+    float eta_scale = 1;  ///< factor by which refraction alone has divided the throughput
+    LightSelector::LitPoint previous{};
+
+    void leave(const SurfacePoint& point, const Vec3& direction) {
       previous = {point.hit.p, point.hit.ng};
       set_leaving_ray(point.hit, direction, ray);
-    };
-    const auto add = [&](const Light& light, const SampledSpectrum& radiance, const auto& light_pdf) {
-      float weight = 1;
-      if (settings_.sample_lights && !std::isinf(scatter_pdf))
-        weight = power_heuristic(scatter_pdf, light_pdf() * selector_.probability(light, previous));
-      if (radiance.is_physical() && weight >= 0)
-        sum += throughput * radiance * weight;
-      else
-        result().record_fault(light);
-    };
-    leave(from, wi);
+    }
+  };
+
+  /// Returns the radiance that arrives from `wi` at wavelengths of excitation: path tracing with light sampling.
+  /// `scatter_pdf`: density of this direction, for MIS.
+  SampledSpectrum excite(const SurfacePoint& from, const Vec3& wi, const SampledWavelengths& lambda,
+                         float scatter_pdf) {
+    ExcitationPath path{ray_, lambda, settings_.sample_lights ? scatter_pdf : INFINITY, depth_ + 1};
+    path.leave(from, wi);
     const uint64_t path_key = hash_key(key_.value, uint64_t{kExcitation});
-    float eta_scale = 1;
     SurfacePoint point;
-    for (int vertex = 0, depth = depth_ + 1; vertex - depth <= kMostPassed; ++vertex) {
+    for (int vertex = 0; vertex - path.depth <= kMostPassed; ++vertex) {
       poll_();
       const VertexKey key = vertex_key(path_key, uint64_t(vertex));
       ++bundle_->traced;
-      if (!world_.intersect(ray, key.key(Use::ray), point)) {
+      if (!world_.intersect(path.ray, key.key(Use::ray), point)) {
         for (const EnvironmentLight* light : world_.environment())
-          add(*light, light->radiance(previous.p, ray.d, lambda),
-              [&] { return light->compensated_pdf(previous.p, ray.d); });
+          add_light(path, *light, light->radiance(path.previous.p, path.ray.d, path.lambda),
+                    [&] { return light->compensated_pdf(path.previous.p, path.ray.d); });
         break;
       }
       if (point.light) {
         const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};
-        add(*point.light, point.light->radiance(at, -ray.d, lambda), [&] { return point.light->pdf(previous.p, at); });
+        add_light(path, *point.light, point.light->radiance(at, -path.ray.d, path.lambda),
+                  [&] { return point.light->pdf(path.previous.p, at); });
       }
       excitation_arena_.reset();
-      // Returns false if the path ends.
-      const auto process = [&] {
-        const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, excitation_arena_);
-        if (!bsdf) {
-          scatter_pdf = INFINITY;
-          leave(point, ray.d);
-          return true;
-        }
-        if (depth >= settings_.max_depth) return false;
-        LocalBsdf local;
-        local.set(*bsdf, point.hit, -ray.d);
-        RandomStream random = key.stream(Use::medium);
-        if (settings_.sample_lights && !selector_.empty()) {
-          const LightNumbers u{random.uniform(), {random.uniform(), random.uniform()}};
-          const auto light = sample_light(point, lambda, u, key, [&](const Vec3& toward, float& pdf) {
-            return local.f_cos(toward, key.stream(Use::light_bsdf), pdf);
-          });
-          if (light) sum += throughput * light->value;
-        }
-        LocalBsdf::Sample sample;
-        const float uc = random.uniform();
-        const Vec2 u{random.uniform(), random.uniform()};
-        if (!local.sample(uc, u, key.stream(Use::bsdf), sample)) return false;
-        if (!is_valid_sample(sample)) {
-          result().record_fault(point);
-          return false;
-        }
-        throughput *= sample.weight;
-        eta_scale *= sample.eta_scale;
-        lambda.retire_black_lanes(throughput);
-        scatter_pdf = sample.is_specular ? INFINITY : sample.pdf;
-        leave(point, sample.wi);
-        ++depth;
-        // A leaf scatters a tenth of the light that excites: roulette from the first scattering on.
-        RandomStream roulette = key.stream(Use::roulette);
-        return !throughput.is_black() && survives_roulette(throughput.max() * eta_scale, 1, roulette, throughput);
-      };
-      if (!name_material_in_errors(point, process)) break;
+      if (!name_material_in_errors(point, [&] { return scatter(path, point, key); })) break;
     }
-    return sum;
+    return path.radiance;
+  }
+
+  /// Adds light that a path has met, with its MIS weight.
+  template <class Pdf>
+  void add_light(ExcitationPath& path, const Light& light, const SampledSpectrum& radiance, const Pdf& light_pdf) {
+    float weight = 1;
+    if (!std::isinf(path.scatter_pdf))
+      weight = power_heuristic(path.scatter_pdf, light_pdf() * selector_.probability(light, path.previous));
+    if (radiance.is_physical() && weight >= 0)
+      path.radiance += path.throughput * radiance * weight;
+    else
+      result().record_fault(light);
+  }
+
+  /// Adds a light sample and scatters a path. Returns false if the path ends.
+  bool scatter(ExcitationPath& path, const SurfacePoint& point, const VertexKey& key) {
+    const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, excitation_arena_);
+    if (!bsdf) {
+      path.scatter_pdf = INFINITY;
+      path.leave(point, path.ray.d);
+      return true;
+    }
+    if (path.depth >= settings_.max_depth) return false;
+    LocalBsdf local;
+    local.set(*bsdf, point.hit, -path.ray.d);
+    RandomStream random = key.stream(Use::medium);
+    if (settings_.sample_lights && !selector_.empty()) {
+      const LightNumbers u{random.uniform(), {random.uniform(), random.uniform()}};
+      const auto light = sample_light(point, path.lambda, u, key, [&](const Vec3& toward, float& pdf) {
+        return local.f_cos(toward, key.stream(Use::light_bsdf), pdf);
+      });
+      if (light) path.radiance += path.throughput * light->value;
+    }
+    LocalBsdf::Sample sample;
+    const float uc = random.uniform();
+    const Vec2 u{random.uniform(), random.uniform()};
+    if (!local.sample(uc, u, key.stream(Use::bsdf), sample)) return false;
+    if (!is_valid_sample(sample)) {
+      result().record_fault(point);
+      return false;
+    }
+    path.throughput *= sample.weight;
+    path.eta_scale *= sample.eta_scale;
+    path.lambda.retire_black_lanes(path.throughput);
+    path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf;
+    path.leave(point, sample.wi);
+    ++path.depth;
+    // A leaf scatters a tenth of the light that excites: roulette from the first scattering on.
+    RandomStream roulette = key.stream(Use::roulette);
+    return !path.throughput.is_black() &&
+           survives_roulette(path.throughput.max() * path.eta_scale, 1, roulette, path.throughput);
   }
 
   static constexpr uint64_t kExcitation = 0x65786369;  ///< use of a vertex's key
@@ -288,6 +306,7 @@ class FluorescenceTracer final : public Tracer {
   const PathSettings& settings_;
   const EmittingMaterials& materials_;
   std::unique_ptr<Tracer> reflected_;
+  bool has_colors_;  ///< the emitted light is added to what `reflected_` has found
   size_t first_band_;
   PathBundle* bundle_ = nullptr;
   size_t lane_ = 0;  ///< of the bundle

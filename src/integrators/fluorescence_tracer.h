@@ -29,8 +29,9 @@ class EmittingMaterials {
   std::vector<std::optional<Emitter>> emitters_;
 };
 
-/// Returns a tracer for one thread of a scene with bands of fluorescence, whose paths have the radiance of the emitted
-/// light alone. Paths that carry other bands are traced by `reflected`. The arguments must outlive it.
+/// Returns a tracer for one thread of a scene with fluorescence. Paths that carry bands of it have the radiance of the
+/// emitted light alone. Other bands and colours are traced by `reflected`; to colours the emitted light is added. The
+/// arguments must outlive it.
 std::unique_ptr<Tracer> make_fluorescence_tracer(const World& world, const LightSelector& selector,
                                                  const PathSettings& settings, const EmittingMaterials& materials,
                                                  std::unique_ptr<Tracer> reflected);

@@ -83,7 +83,8 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator {
   }
 
   std::string adapt(const World& world, const CameraSampling& sampling) override {
-    if (emitting_ && first_fluorescence_band(world.wavelengths()) == 0) return {};  // no reflected light
+    const auto bands = world.wavelengths().bands();
+    if (std::ranges::all_of(bands, is_of_fluorescence) && !bands.empty()) return {};  // no reflected light
     AdaptedSettings adapted = adapted_;
     adapted.light_samples = adapted.light_samples && settings_.sample_lights && selector_.has_extent();
     if (!adapted.light_samples && !adapted.scattered_rays) return {};

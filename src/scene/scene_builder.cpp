@@ -156,8 +156,7 @@ class SceneBuilder {
     scene_.radius_ = b.is_empty() ? 1 : length(b.max - b.min) / 2;
     check_rays(b);
     build_tiling();
-    if (first_fluorescence_band(*scene_.wavelengths_) < scene_.wavelengths_->bands().size())
-      set_fluorescence(preparation);
+    if (has_fluorescence(*scene_.wavelengths_)) set_fluorescence(preparation);
     scene_.integrator_->prepare(scene_);
     if (const std::string adapted = scene_.integrator_->adapt(scene_, scene_.camera_sampling()); !adapted.empty())
       log_.info(adapted);
@@ -167,7 +166,7 @@ class SceneBuilder {
   void set_fluorescence(const Preparation& preparation) {
     auto* integrator = dynamic_cast<FluorescenceIntegrator*>(scene_.integrator_.get());
     if (!integrator)
-      fail(description_.integrator.where, "integrator \"{}\" computes no bands of fluorescence: \"path\" does",
+      fail(description_.integrator.where, "integrator \"{}\" computes no fluorescence: \"path\" does",
            description_.integrator.name);
     for (size_t i = 0; i < scene_.is_leaf_.size(); ++i)
       if (const ParsedPlugin& plugin = description_.materials[i].plugin;

@@ -10,6 +10,7 @@
 #include "radiometry/horizontal_irradiance.h"
 #include "scene/fluorescence_by_material.h"
 #include "scene/format/parser.h"
+#include "spectra/cie.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -262,6 +263,46 @@ TEST_F(SceneFluorescence, BandsOfBothKindsStandBesideEachOther) {
   }
 }
 
+/// The colours of `hero` are those without fluorescence, plus those of its radiance.
+TEST_F(SceneFluorescence, ColorsCanShowIt) {
+  // A lamp that only excites: what arrives between 640 and 830 nm is fluorescence.
+  const std::string lamp =
+      "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"spectrum L\" [300 0 399 0 400 1 500 1 "
+      "501 "
+      "0 2500 0]\n";
+  const auto luminance = [&](const std::string& wavelengths) {
+    Session session(silent_log(), {2, {}, {}});
+    const LoadedScene loaded = session.load(description(
+        lamp + kReplayed + square("leaf", 0),
+        "Option \"string wavelengths\" \"" + wavelengths +
+            "\"\nLookAt 1 1 5  1 1 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 .5]\n"
+            "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\n"));
+    RenderPart part = loaded.empty_part();
+    session.render(loaded, {0, 256}, part);
+    double sum = 0;
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) {
+        const Triple c = part.film.mean(x, y);  // linear sRGB
+        sum += (0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]) / 64;
+      }
+    return sum;
+  };
+  const double without = luminance("hero,lambdamin=400"), with = luminance("hero,lambdamin=400,fluorescence=true");
+  // Luminances by the matrix and by the reflectance, 0.05 up to 500 nm.
+  double emitted = 0, reflected = 0;
+  for (double nm = 360.5; nm < 830; ++nm) {
+    const double ybar = cie_xyz(nm)[1];
+    if (nm > 400 && nm < 500) reflected += ybar * 0.05;
+    if (nm > kEmission_nm.min)
+      for (double excitation = 400.5; excitation < 500; ++excitation)
+        emitted += ybar * lit(excitation, nm) * excitation / nm;
+  }
+  EXPECT_NEAR((with / without - 1) / (emitted / reflected), 1, 0.05);  // the standard error is about 0.01
+  EXPECT_THAT(error_of([&] { luminance("hero,fluorescence=true,lambdamin=450"); }),
+              HasSubstr("fluorescence is excited from 400 to 750 nm"));
+  EXPECT_THAT(error_of([&] { luminance("smpte,fluorescence=true"); }), HasSubstr("fluorescence"));
+}
+
 TEST_F(SceneFluorescence, ErrorsSayWhatToDo) {
   const auto loaded = [&](const std::string& world, const std::string& options) {
     return error_of([&] { Session(silent_log(), {1, {}, {}}).load(description(world, options)); });
@@ -269,7 +310,7 @@ TEST_F(SceneFluorescence, ErrorsSayWhatToDo) {
   const std::string bands = "Option \"string wavelengths\" \"bands,fluorescence=740\"\n";
   EXPECT_THAT(loaded(kSun + kBlack + square("soil", 0), bands), HasSubstr("a quantum yield, as in"));
   EXPECT_THAT(loaded(kSun + kReplayed + square("leaf", 0), bands + "Integrator \"volpath\"\n"),
-              HasSubstr("integrator \"volpath\" computes no bands of fluorescence: \"path\" does"));
+              HasSubstr("integrator \"volpath\" computes no fluorescence: \"path\" does"));
   EXPECT_THAT(loaded(kSun, "Option \"string wavelengths\" \"bands,fluorescence=900\"\n"), HasSubstr("640"));
   EXPECT_THAT(loaded(kSun, "Option \"string wavelengths\" \"bands,fluorescence=740,740\"\n"),
               HasSubstr("two bands at 740 nm"));

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/fluorescence.h"
 #include "spectra/cie.h"
 #include "spectra/color/color_space.h"
 #include "spectra/color/film_sensor.h"
@@ -35,7 +36,13 @@ constexpr Param kWhiteBalance{.name = "whitebalance",
                               .doc =
                                   "Colour temperature of the daylight that is rendered as white; 0: 6500 K for camera "
                                   "sensors, no adaptation for cie1931. The scene's Film can set it too."};
-constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance};
+constexpr Param kFluorescence{.name = "fluorescence",
+                              .kind = ParamKind::boolean,
+                              .default_value = false,
+                              .doc =
+                                  "Add the fluorescence of leaves to the light that they reflect "
+                                  "(docs/fluorescence.md); the wavelengths must reach from 400 to 750 nm."};
+constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance, kFluorescence};
 
 /// Density proportional to 1 / cosh^2(0.0072 (nm - 538)), close to the eye's response (Radziszewski et al. 2009); over
 /// 360 to 830 nm the constant factor is 0.0039398042. Its integral is a difference of tanh, which is inverted.
@@ -84,9 +91,15 @@ std::optional<FilmSensor> sensor_of(const Params& p) {
 
 /// Hero wavelength spectral sampling (Wilkie et al. 2014): four wavelengths at equal steps of the density's integral,
 /// rotated by one random number. The film's channels are CIE XYZ.
-class Hero final : public WavelengthStrategy {
+class Hero final : public WavelengthStrategy, public FluorescenceColors {
  public:
-  explicit Hero(const Params& p) : density_(range_of(p)), film_(sensor_of(p)) {}
+  explicit Hero(const Params& p)
+      : density_(range_of(p)), film_(sensor_of(p)), adds_fluorescence_(p.boolean("fluorescence")) {
+    const Interval nm = density_.range_nm();
+    if (adds_fluorescence_ && !(nm.contains(kExcitation_nm.min) && nm.contains(kExcitation_nm.max)))
+      fail(p.where("fluorescence"), "fluorescence is excited from {} to {} nm, the wavelengths reach from {} to {} nm",
+           kExcitation_nm.min, kExcitation_nm.max, nm.min, nm.max);
+  }
 
   SampledWavelengths sample(float u) const override {
     SampledWavelengths lambda;
@@ -119,10 +132,12 @@ class Hero final : public WavelengthStrategy {
     return xyz;
   }
   std::string_view film_space() const override { return kXyzName; }
+  bool adds_fluorescence() const override { return adds_fluorescence_; }
 
  private:
   VisibleDensity density_;
   std::optional<FilmSensor> film_;
+  bool adds_fluorescence_;
 };
 
 }  // namespace
