@@ -148,7 +148,7 @@ std::string emission_text(const Arguments& args) {
 Result fluorescence_brf_result(const JobRun& run, const BrfMeter& meter, const BrfMeasurement& measurement,
                                const RenderControl& control) {
   // Light paths for the photons that leave the leaves: their standard error is then well below 1 %.
-  constexpr uint64_t kPaths = 1 << 18;
+  constexpr uint64_t kPaths = 1 << 16;
   const bool has_units = check_units(run, meter.scene().description());
   FluorescenceFluxMeter light_paths(
       run.session(), described_scene(run),
@@ -156,6 +156,7 @@ Result fluorescence_brf_result(const JobRun& run, const BrfMeter& meter, const B
       &meter.scene().scene());
   light_paths.trace(kPaths, run.session().pool(), {.stop = control.stop, .deadline = control.deadline});
   const FluorescenceFluxMeasurement flux = light_paths.read();
+  // The table has a row for each view and wavelength, the text a column for each wavelength.
   Table table{"fluorescence"}, text{"fluorescence"};
   for (size_t view = 0; view < measurement.views.size(); ++view) {
     const ViewDirection& direction = measurement.views[view];
@@ -204,7 +205,7 @@ Result fluorescence_flux_result(const JobRun& run) {
   const auto meter = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
   const bool has_units = check_units(run, meter->loaded().description());
   run.context.log().check();
-  // Each wavelength needs some paths for its standard error.
+  // As in `flux` of reflected light, each wavelength needs some paths for its standard error.
   constexpr uint64_t kLeast = 32;
   meter->trace(std::max(uint64_t(run.args.count("paths")), kLeast * request.emission_nm.size()), run.session().pool(),
                control);
