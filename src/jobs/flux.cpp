@@ -46,6 +46,11 @@ constexpr JobParam kParams[] = {
              {.type = "NAME", .decides = true, .needs = "bands"}),
     kTargetParam,
     kPeriodParam,
+    JobParam(
+        "sides", flag,
+        "Light also enters through the sides of the box between the target and the bottom of the scene: for plants "
+        "that stand alone. Shares remain relative to the light through the target, and may exceed 1.",
+        {.decides = true}),
     JobParam("paths", count, "Number of light paths; at least 32 for each wavelength are traced.",
              {.default_value = "1e6", .range = kCounts}),
     rms_param(
@@ -326,10 +331,19 @@ FluxRequest request_of(const JobRun& run, const SpectrumPtr& irradiance) {
                       .wavelengths = by_energy ? std::string() : wavelengths_text(run.args),
                       .irradiance = irradiance,
                       .irradiance_name = run.args.text("irradiance"),
+                      .sides = run.args.flag("sides"),
                       .energy = by_energy,
                       .leaves = run.args.texts("material")};
   if (run.args.given("by")) request.organs = organ_kind(run.args);
   return request;
+}
+
+/// Warns if organs miss light that does not pass the target, unless the user has chosen it.
+void warn_of_sides(const JobRun& run, const FluxRequest& request, const Scene& scene) {
+  if (request.energy && request.organs && !request.target && !request.sides && !scene.period())
+    run.log().warn({}, fmt::format("light that enters beside the scene's top does not count; {} counts it, for plants "
+                                   "that stand alone, {} states the rectangle through which light enters",
+                                   run.args.spelled("sides"), run.args.spelled("target")));
 }
 
 /// The job: traces light paths until the requested number or error is reached, with checkpoints.
@@ -360,6 +374,7 @@ Result flux(const JobRun& run) {
   FluxMeter& meter = *loaded;
   const auto bands = meter.scene().wavelengths().bands();
   if (!photons) explain_no_photons(run, bands);
+  warn_of_sides(run, request, meter.scene());
   run.context.log().check();
   auto measured = measure(run, control, meter, photons, resume_file ? &*resume_file : nullptr);
   if (!measured) {

@@ -57,6 +57,7 @@ std::optional<Interval> range_of(const std::vector<Interval>& ranges) {
 std::string text_of(const FluxRequest& request) {
   std::string text = "flux";
   if (request.organs) text += fmt::format(" by {}", kOrganKinds[size_t(*request.organs)]);
+  if (request.sides) text += " sides";
   if (request.energy) text += fmt::format(" energy, leaves {}", fmt::join(request.leaves, " "));
   for (const Interval& nm : request.ranges_nm) text += fmt::format(" {:g}:{:g}", nm.min, nm.max);
   if (request.irradiance) text += " irradiance " + request.irradiance_name;
@@ -77,7 +78,7 @@ MeanError organ_mean(const Moment& moment, uint64_t paths) {
 
 struct FluxMeter::State {
   LoadedScene loaded;
-  Target target;
+  EntryBox entry;
   IncidentLight light;
   LitBands wavelengths;
   size_t materials, bands;
@@ -153,17 +154,18 @@ class FluxMeter::Block {
 
   /// Traces light until it is absorbed or leaves the scene.
   void trace_path(SampledWavelengths lambda, uint64_t key, RandomStream& random) {
-    const Target& t = state_.target;
     const Vec2 u{random.uniform(), random.uniform()};
     const auto light = state_.light.sample(random, lambda);
     if (!light) return;
     is_direct_ = light->is_direct;
     if (state_.channels.splits) state_.limit_to_optics(lambda);
-    const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
     const Vec3d d = to_double(light->direction);
+    const auto [entry, weight] = state_.entry.sample(d, u, random);
     const Scene& scene = state_.scene();
-    Ray ray{to_float(on_target - d * distance_above(scene, t, -d.z) - scene.origin()), light->direction};
+    const Target at_entry{.x0 = 0, .x1 = 0, .y0 = 0, .y1 = 0, .z = entry.z};
+    Ray ray{to_float(entry - d * distance_above(scene, at_entry, -d.z) - scene.origin()), light->direction};
     SampledSpectrum share = light->weight;
+    if (state_.entry.bottom) share *= SampledSpectrum(weight);
     constexpr int kFirstRoulette = 3, kPolled = 256;
     constexpr float kFull = 0.25f;  // share of the incident light below which Russian roulette may end a path
     const float full = kFull * share.max();
@@ -285,7 +287,9 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance, request.ranges_nm);
   IncidentLight light(scene, std::move(irradiance), wavelengths.sample_for_index(0, 0.5f));
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
-  state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(light), std::move(wavelengths), materials,
+  if (request.sides && scene.period()) fail({}, "a periodic scene has no sides through which light could enter");
+  const EntryBox entry{target, request.sides ? std::optional(bottom_of(scene)) : std::nullopt};
+  state_ = std::make_unique<State>(State{std::move(loaded), entry, std::move(light), std::move(wavelengths), materials,
                                          bands, FluxChannels{bands, request.energy}, std::move(is_leaf)});
   State& s = *state_;
   s.reflectors = reflectors_of(s.scene());
@@ -392,7 +396,7 @@ FluxMeasurement FluxMeter::read() const {
                               .materials = {},
                               .sum = shares(kTotal),
                               .paths = s.paths,
-                              .target_area = (s.target.x1 - s.target.x0) * (s.target.y1 - s.target.y0),
+                              .target_area = s.entry.target_area(),
                               .by_organ = {},
                               .areas = {}};
   for (const uint32_t m : s.reflectors) {

@@ -21,7 +21,10 @@ struct FluxRequest {
   std::string wavelengths = {};                      ///< a PluginText of `bands`
   /// Spectral irradiance, of any unit, by which bands with responses are weighted; nullptr: that of the scene's lights.
   SpectrumPtr irradiance = {};
-  std::string irradiance_name = {};      ///< identifies `irradiance`
+  std::string irradiance_name = {};  ///< identifies `irradiance`
+  /// Light also enters through the sides of the box between the target and the scene's bottom. Shares may exceed 1:
+  /// they remain relative to the light through the target. For scenes that are not periodic.
+  bool sides = false;
   std::optional<OrganKind> organs = {};  ///< also measure the absorption of each organ
   /// Also measure energy and photons, direct and diffuse light, and sunlit and shaded leaves, each apart:
   /// FluxMeasurement::energy. All bands must have responses.

@@ -96,7 +96,8 @@ class OrganSums {
   void add(uint64_t organ, size_t channel, double share) {
     Cell& cell = cells_[(organ - 1) * channels_ + channel];
     std::atomic_ref(cell.sum).fetch_add(std::llrint(share * kUnits), std::memory_order_relaxed);
-    std::atomic_ref(cell.square).fetch_add(std::llrint(share * share * kUnits), std::memory_order_relaxed);
+    const double square = std::min(share * share, kLargestSquare);
+    std::atomic_ref(cell.square).fetch_add(std::llrint(square * kUnits), std::memory_order_relaxed);
   }
   size_t size() const { return cells_.size(); }
   std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
@@ -106,6 +107,7 @@ class OrganSums {
 
  private:
   static constexpr double kUnits = 0x1p36;
+  static constexpr double kLargestSquare = 0x1p20;  ///< light from the horizon has large weights: 64 bits suffice
   struct Cell {
     int64_t sum = 0, square = 0;
   };

@@ -1,5 +1,6 @@
 #include "radiometry/incident_light.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "core/math/sampling.h"
@@ -71,6 +72,20 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
   for (int lane = 0; lane < lambda.count; ++lane)
     if (irradiance[lane] > 0) weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
   return Sample{s->direction, weight, frond::is_direct(*lights_[i], -s->direction)};
+}
+
+EntryBox::Point EntryBox::sample(const Vec3d& d, Vec2 u, RandomStream& random) const {
+  const Target& t = target;
+  const double x = std::lerp(t.x0, t.x1, double(u.x)), y = std::lerp(t.y0, t.y1, double(u.y));
+  if (!bottom) return {{x, y, t.z}};
+  const double width = t.x1 - t.x0, depth = t.y1 - t.y0, height = t.z - *bottom;
+  const double top = width * depth, along_x = depth * height * std::abs(d.x / d.z),
+               along_y = width * height * std::abs(d.y / d.z), all = top + along_x + along_y;
+  const auto weight = float(all / top);
+  const double face = random.uniform_double() * all;
+  if (face < top) return {{x, y, t.z}, weight};
+  if (face < top + along_x) return {{d.x > 0 ? t.x0 : t.x1, y, std::lerp(*bottom, t.z, double(u.x))}, weight};
+  return {{x, d.y > 0 ? t.y0 : t.y1, std::lerp(*bottom, t.z, double(u.y))}, weight};
 }
 
 }  // namespace frond

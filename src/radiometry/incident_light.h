@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "radiometry/brf.h"
 #include "radiometry/horizontal_irradiance.h"
 
 namespace frond {
@@ -26,6 +27,21 @@ class IncidentLight {
   std::span<const Light* const> lights_;
   std::vector<const EnvironmentLight*> cosine_sampled_;  ///< by light; nullptr: the light samples itself
   HorizontalIrradiance irradiance_;
+};
+
+/// Faces through which light enters: the target, and perhaps the sides of the box below it.
+struct EntryBox {
+  Target target;
+  std::optional<double> bottom = {};  ///< z of the lower ends of the sides; nullopt: light enters through the target
+
+  double target_area() const { return (target.x1 - target.x0) * (target.y1 - target.y0); }
+
+  struct Point {
+    Vec3d p;           ///< in the coordinates of the scene file
+    float weight = 1;  ///< area of the faces over that of the target, both projected along the direction
+  };
+  /// Returns a point, uniform over the projected faces, for light that propagates along `d`, downward.
+  Point sample(const Vec3d& d, Vec2 u, RandomStream& random) const;
 };
 
 }  // namespace frond

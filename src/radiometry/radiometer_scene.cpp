@@ -152,6 +152,8 @@ void check_target(const Scene& scene, const Target& target) {
          b.min.y, b.max.x, b.max.y);
 }
 
+double bottom_of(const Scene& scene) { return file_bounds(scene).min.z; }
+
 double distance_above(const Scene& scene, const Target& target, double cosine) {
   constexpr double kClear = 1e-3;  // fraction of the scene's radius
   const double top = file_bounds(scene).max.z + kClear * double(scene.radius());

@@ -31,6 +31,9 @@ Target default_target(const Scene& scene, const Log& log);
 /// Throws InputError for a target too far away for Embree, or beside the bounds of a scene that is not periodic.
 void check_target(const Scene& scene, const Target& target);
 
+/// Returns the least z of the scene.
+double bottom_of(const Scene& scene);
+
 /// Returns the distance from the target along a direction, whose cosine with +z is given, to a point above the whole
 /// scene. Rays through the target start there.
 double distance_above(const Scene& scene, const Target& target, double cosine);

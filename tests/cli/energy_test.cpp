@@ -100,6 +100,19 @@ TEST_F(EnergyJob, OrgansHaveRowsWithNamesAreasAndCentres) {
   EXPECT_THAT(measured({"flux", "--wavelengths", "550", "--by", "instance"}).err, HasSubstr("has no instances"));
 }
 
+TEST_F(EnergyJob, OrgansOfAPlantThatStandsAloneNeedItsSides) {
+  const auto scene = folder_.write("alone.pbrt",
+                                   "WorldBegin\nLightSource \"sky\"\nMaterial \"leaf_lambert\" \"string specimen\" "
+                                   "\"soybean\" Shape \"trianglemesh\" \"point3 P\" [0 0 1 1 0 1 1 1 1]\n");
+  const auto err = [&](const Words& more) {
+    return frond_command({"flux", scene.string(), "--no-cache", "--by", "mesh", "--paths", "64", "-q"}, more).err;
+  };
+  EXPECT_THAT(err({"--bands", "par"}), HasSubstr("light that enters beside the scene's top does not count; --sides"));
+  EXPECT_THAT(err({"--bands", "par", "--sides"}), Not(HasSubstr("beside the scene's top")));
+  EXPECT_THAT(err({"--bands", "par", "--target", "0,1,0,1,1"}), Not(HasSubstr("beside the scene's top")));
+  EXPECT_THAT(measured({"flux", "--sides"}).err, HasSubstr("a periodic scene has no sides"));
+}
+
 /// The property of a face is the light of its organ.
 TEST_F(EnergyJob, APlyHasTheLightOfEachFace) {
   EXPECT_THAT(measured({"flux", "--bands", "par", "--ply", path("a.ply")}).err, HasSubstr("--ply needs --by"));

@@ -290,6 +290,45 @@ TEST_F(Energy, OfEachOrganIsThatOfItsArea) {
   }
 }
 
+/// Black squares of 1 x 1 at z = 0 and 2, and a black wall of 1 x 0.5, in light of a sun at 45 degrees and of a uniform
+/// sky. The light of the lower square and of the wall enters through the side.
+TEST_F(Energy, OfPlantsThatStandAloneCountsLightThroughTheSides) {
+  const std::string world =
+      "MakeNamedMaterial \"leaf\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 0 2500 0]\n"
+      "NamedMaterial \"leaf\" Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  1 1 0  0 1 0] \"integer indices\" [0 "
+      "1 2  0 2 3]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [1 0 2  2 0 2  2 1 2  1 1 2] \"integer indices\" [0 1 2  0 2 3]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 3 0  0 4 0  0 4 0.5  0 3 0.5] \"integer indices\" [0 1 2  0 2 3]\n";
+  const std::string
+      sun = "LightSource \"distant\" \"point3 from\" [-1 0 1] \"point3 to\" [0 0 0] \"spectrum L\" [300 1 2500 1]\n",
+      sky = "LightSource \"infinite\" \"spectrum L\" [300 1 2500 1]\n";
+  const auto absorbed = [&](const std::string& light, bool sides) {
+    const FluxMeasurement m = flux(light + world,
+                                   {.target = Target{0, 3, 0, 4, 2},
+                                    .wavelengths = "bands,ranges=400,700,names=par",
+                                    .sides = sides,
+                                    .organs = OrganKind::mesh},
+                                   1 << 19);
+    std::vector<MeanError> shares;
+    for (const OrganShare& share : m.energy->organs)
+      shares.push_back({share.energy.mean * m.target_area, share.energy.standard_error * m.target_area});
+    return shares;
+  };
+  const auto expect = [](const MeanError& share, double expected) {
+    EXPECT_NEAR(share.mean, expected, kZ * share.standard_error + 3e-4);
+    EXPECT_LT(share.standard_error, 0.01);
+  };
+  const auto direct = absorbed(sun, true), diffuse = absorbed(sky, true), through_top = absorbed(sun, false);
+  expect(direct[0], 1);
+  expect(direct[1], 1);
+  expect(direct[2], 0.5);
+  expect(diffuse[1], 1);
+  expect(diffuse[2], 0.5 * 2 / 2);  // half of the light of the hemisphere on each of two sides
+  expect(through_top[1], 1);
+  EXPECT_EQ(through_top[0].mean, 0);
+  EXPECT_EQ(through_top[2].mean, 0);
+}
+
 TEST_F(Energy, AnOrgansCentreIsInTheCoordinatesOfTheFile) {
   Session session(silent_log(), {1, {}, {}});
   const std::string sun = "LightSource \"sky\"\n";
