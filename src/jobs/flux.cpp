@@ -386,6 +386,8 @@ Result flux(const JobRun& run) {
   warn_of_unmet(run, measurement);
   const bool are_weighted = !bands.front().response.empty();
   if (are_weighted && !run.args.given("irradiance")) light = kOfScene;
+  // The tables without --bands are those of the first version, which scripts read (docs/compatibility.md): so is the
+  // table of instances below.
   Result result = request.energy
                       ? energy_result(measurement)
                       : Result{.tables = {share_table(measurement, photons)}, .text = share_text(measurement, photons)};

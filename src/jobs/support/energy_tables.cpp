@@ -131,6 +131,7 @@ std::optional<MeanError> fapar(const FluxMeasurement& measurement) {
 Table energy_table(const FluxMeasurement& measurement) {
   const EnergyBudget& budget = *measurement.energy;
   Table table{"energy"};
+  // Direct and diffuse light are columns, so that a row has one quantity and band.
   const auto add_row = [&](const std::string& quantity, const std::string& material, size_t band,
                            const EnergyShare& share) {
     const IncidentBand& incident = budget.incident[band];

@@ -74,7 +74,8 @@ std::list<PlannedOutput> planned_tables(const Arguments& args) {
   std::list<PlannedOutput> planned;
   const std::string csv = args.text("csv");
   if (csv.empty() || csv == "-") return planned;
-  std::vector<std::pair<const char*, const char*>> tables;  // name, and what it is in messages
+  // Name, and what it is in messages. The first table of the result is the file of --csv itself.
+  std::vector<std::pair<const char*, const char*>> tables;
   const bool by_energy = args.given("bands");
   if (args.given("by")) tables.emplace_back(by_energy ? "energy" : "flux", by_energy ? "energy" : "shares");
   if (by_energy) tables.emplace_back("leaves", "leaves");

@@ -63,6 +63,7 @@ double brightest(std::vector<float> values) {
 
 /// Each face has vertices of its own, so that a vertex has one colour.
 size_t write_organ_ply(const std::string& path, const FluxMeasurement& measurement, const Organs& organs) {
+  // The first pass counts the faces and finds the range of the colours, which the head states.
   std::vector<float> first_band;
   size_t faces = 0;
   bool is_far = false;  // map coordinates, which floats would round
