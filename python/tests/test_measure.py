@@ -304,6 +304,27 @@ ObjectInstance "leaf"
         assert 0 < error < 0.01 * expected and abs(leaves["par_umol_m2_s"][0] - expected) < 5 * error + 1e-3 * expected
 
 
+def test_flux_by_energy_and_organ(tmp_path):
+    """A black triangle of 0.5 m2 absorbs the energy of the light above it. Within 5 standard errors: a false alarm in 2e6."""
+    (tmp_path / "leaf.pbrt").write_text("""WorldBegin
+LightSource "sky" "float elevation" 40
+MakeNamedMaterial "black" "string type" "diffuse" "spectrum reflectance" [ 300 0 2500 0 ]
+NamedMaterial "black"
+Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  1 1 0 ]
+""")
+    tables = frond.flux(tmp_path / "leaf.pbrt", bands="par,all=300:2500", material="black", by="mesh", target=(0, 1, 0, 1, 0),
+                        paths=20_000)
+    assert list(tables) == ["meshes", "energy", "leaves"]
+    incident = tables["energy"].query("quantity == 'incident' and material == ''").set_index("band")
+    mesh = tables["meshes"].iloc[0]
+    assert mesh["name"] == "black" and mesh["area"] == 0.5
+    for band in ("par", "all"):
+        assert abs(mesh[f"{band}_w_m2"] - incident["w_m2"][band]) < 5 * mesh[f"{band}_w_m2_se"]
+        assert abs(incident["direct_w_m2"][band] + incident["diffuse_w_m2"][band] - incident["w_m2"][band]) < 1e-6 * incident["w_m2"][band]
+    sunlit = tables["leaves"].query("leaves == 'sunlit' and band == 'par'").iloc[0]
+    assert sunlit["area"] == 0.5 and abs(sunlit["absorbed_w_m2"] - mesh["par_w_m2"]) < 1e-6 * mesh["par_w_m2"]
+
+
 def test_bench_of_a_material():
     found = frond.bench("diffuse", samples=1000, min_time=0.001)
     assert set(found.tables) == {"times", "worths"} and len(found.tables["times"]) > 0
