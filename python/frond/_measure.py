@@ -8,7 +8,7 @@ from ._bsdf import Bsdf, bands_of, material_text
 from ._jobs import FUNCTIONS, _table, run
 from ._records import JOBS, by_alias
 from ._session import checked_session
-from ._values import checked_text, is_array, named, number, path_text, reals, scalar, table_text, texts, whole
+from ._values import checked_text, is_array, named, number, path_text, reals, scalar, table_file, table_text, texts, whole
 
 
 def _registered(bsdf, session):
@@ -86,7 +86,7 @@ def spectrophotometer(material, wavelengths=None, angles=8, **options):
 
 
 @_with_keywords_of("flux")
-def flux(scene, wavelengths=None, *, by=None, **options):
+def flux(scene, wavelengths=None, *, by=None, times=None, **options):
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
@@ -101,8 +101,13 @@ def flux(scene, wavelengths=None, *, by=None, **options):
 
     With bands="par,nir,shortwave" a dictionary of tables: "energy", one row for each quantity and band, with W/m2 and umol/(m2 s);
     "leaves", sunlit and shaded leaf area with its light, if the scene has leaves; with by also "instances", "meshes", "parts",
-    "triangles" or "materials"."""
-    tables = FUNCTIONS["flux"](scene, wavelengths, by=by, **options).tables
+    "triangles" or "materials".
+
+    times: a table of times as a file, a data frame with a column or an index of times, or a dictionary of columns. The tables then
+    have a column "time", and their rows of PAR "par_umol_m2_s"; the sums of each day are a table of
+    run("flux", ...).tables["flux_days"]."""
+    with table_file(times, "times") as path:
+        tables = FUNCTIONS["flux"](scene, wavelengths, by=by, times=path, **options).tables
     if options.get("bands") is not None:
         return tables
     first = "fluorescence" if options.get("fluorescence") else "flux"

@@ -1,5 +1,6 @@
 """Values of Python as numbers and texts: arrays of the field's packages, physical units, and what is no such value."""
 
+import contextlib
 import csv
 import enum
 import io
@@ -7,6 +8,7 @@ import math
 import operator
 import os
 import reprlib
+import tempfile
 
 #: Units by the unit of a parameter, with the factor to it. Unnamed parameters are shares.
 _UNITS = {
@@ -253,6 +255,23 @@ def checked_text(text, what):
     except UnicodeEncodeError:
         raise ValueError(f"{what}: {text!r} is not UTF-8") from None
     return text
+
+
+@contextlib.contextmanager
+def table_file(table, what):
+    """Context of the path of a table: that of a file, or of a temporary file with the columns of a data frame or a dictionary, whose
+    index of times becomes the column "time"."""
+    if table is None or isinstance(table, (str, bytes, os.PathLike)):
+        yield table
+        return
+    index = getattr(table, "index", None)
+    if hasattr(index, "tz_localize") and "time" not in table.columns:
+        table = table.rename_axis("time")
+    with tempfile.TemporaryDirectory(prefix="frond-") as folder:
+        path = os.path.join(folder, what + ".csv")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(table_text(table, what))
+        yield path
 
 
 def path_text(path, what="path"):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "jobs/support/provenance.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
 #include "jobs/support/scene_fluorescence.h"
@@ -66,6 +67,7 @@ constexpr JobParam kParams[] = {
     kStrictParam,
     kCsvParam,
     kJsonParam,
+    kProvenanceParam,
     chart_param("plot", "Chart against the zenith angle, or maps of a hemisphere: .svg or .png."),
     kCheckpointParam,
     kResumeParam,
@@ -286,6 +288,8 @@ Result brf(const JobRun& run) {
                 .facts = {{"quantity", std::string(measurement.quantity)},
                           {"paths", double(measurement.paths)},
                           {"relative_error", error}}};
+  for (Fact& fact : scene_provenance(meter->scene().scene(), meter->scene().description()))
+    result.facts.push_back(std::move(fact));
   add_rows(result.tables[0], measurement, "");
   result.text = fmt::format("{}\n{}", measurement.quantity, to_text(direction_table(measurement)));
   return result;

@@ -9,10 +9,12 @@
 
 #include "jobs/support/flux_energy.h"
 #include "jobs/support/flux_tables.h"
+#include "jobs/support/provenance.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
 #include "jobs/support/scene_fluorescence.h"
 #include "jobs/support/time_limit.h"
+#include "jobs/support/time_series.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/instance_errors.h"
 #include "spectra/named.h"
@@ -77,6 +79,12 @@ constexpr JobParam kParams[] = {
         "Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward.",
         "wavelengths,rms,instance-error,irradiance,checkpoint,resume"),
     kSceneEmissionParam,
+    JobParam(
+        "times", text,
+        "Table of times (CSV): measure the scene under the light of each, with one load of the scene. Columns: time "
+        "(2026-06-21T11:00+02:00); latitude and longitude, or sun_zenith and sun_azimuth from north to east; ghi, "
+        "dhi, dni (W/m2); any parameter of LightSource \"sky\", or of the scene's only LightSource.",
+        {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "checkpoint,resume,ply,fluorescence"}),
     kSwapParam,
     kSeedParam,
     kIgnoreUnsupportedParam,
@@ -87,6 +95,7 @@ constexpr JobParam kParams[] = {
              "PLY file to write: meshes whose faces have the light that each row of --by absorbs for each unit of its "
              "area, as properties, and as colours in the first band.",
              {.type = "FILE", .path = PathUse::write, .needs = "bands"}),
+    kProvenanceParam,
     kCheckpointParam,
     kResumeParam,
 };
@@ -178,11 +187,17 @@ SpectrumPtr named_irradiance(const JobRun& run) {
   return named_or_read_spectrum(light, light, {});
 }
 
-/// Returns the first light of the scene without a unit; nullptr if there is none. The light sky alone keeps the unit of
-/// its data; its illuminance has none either.
+/// Returns the first light of the scene without a unit; nullptr if there is none. The light sky keeps the unit of its
+/// data; its illuminance has none. Lamps have one if their power is stated in W or umol/s.
 const ParsedPlugin* light_without_unit(const SceneDescription& description) {
+  const auto has_unit = [](const ParsedPlugin& light) {
+    if (light.name == "sky") return !find_param(light.params, "illuminance");
+    return find_param(light.params, "radiantpower") || find_param(light.params, "photonflux");
+  };
   for (const auto& [light, _] : description.lights)
-    if (light.name != "sky" || find_param(light.params, "illuminance")) return &light;
+    if (!has_unit(light)) return &light;
+  for (const ParsedPlugin& light : description.area_lights)
+    if (!has_unit(light)) return &light;
   return nullptr;
 }
 
@@ -216,6 +231,12 @@ std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescri
                                             const FluxMeter& meter, const SpectrumPtr& irradiance) {
   const auto bands = meter.scene().wavelengths().bands();
   if (!PhotonWeights::cover_par(bands)) return {};
+  if (const ParsedPlugin* light = light_without_unit(description); light && has_lamps(meter.scene().lights())) {
+    run.log().warn(light->where,
+                   "this light has no unit, so that photons are unknown: give it \"radiantpower\" (W) or "
+                   "\"photonflux\" (umol/s)");
+    return {};
+  }
   check_physical(description, run);
   if (irradiance) return PhotonWeights::from_irradiance(bands, *irradiance);
   if (photon_light_name(run, description) == kOfScene)
@@ -346,34 +367,35 @@ void warn_of_sides(const JobRun& run, const FluxRequest& request, const Scene& s
                                    run.args.spelled("sides"), run.args.spelled("target")));
 }
 
-/// The job: traces light paths until the requested number or error is reached, with checkpoints.
-Result flux(const JobRun& run) {
-  if (run.args.flag("fluorescence")) return fluorescence_flux_result(run);
+/// Traces light paths until the requested number or error is reached, with checkpoints. `last`: a meter of a scene that
+/// differs in parameters of lights alone, or nullptr; afterwards that of this scene.
+Result measure_scene(const JobRun& run, const std::function<SceneDescription()>& describe,
+                     std::unique_ptr<FluxMeter>& last) {
   std::optional<ResumeFile> resume_file;
   if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
   const SpectrumPtr irradiance = named_irradiance(run);
   const bool has_organs = run.args.given("by");
-  if (!has_organs) warn_if_nothing_is_kept(run);
-  const std::list<PlannedOutput> planned = planned_tables(run.args);
   FluxRequest request = request_of(run, irradiance);
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   std::optional<PhotonWeights> photons;
   std::string light;
+  std::vector<Fact> provenance;
   const auto load = [&] {
-    const SceneDescription description = described_scene(run);
+    const SceneDescription description = describe();
     if (request.energy) {
       set_bands(run, description, request);
       warn_of_no_unit(run, description);
     }
-    auto made = std::make_unique<FluxMeter>(run.session(), description, request);
+    auto made = std::make_unique<FluxMeter>(run.session(), description, request, last ? &last->scene() : nullptr);
+    provenance = scene_provenance(made->scene(), description);
     photons = photon_weights(run, description, *made, irradiance);
     light = photon_light_name(run, description);
     return made;
   };
-  const auto loaded = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
-  FluxMeter& meter = *loaded;
+  last = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
+  FluxMeter& meter = *last;
   const auto bands = meter.scene().wavelengths().bands();
-  if (!photons) explain_no_photons(run, bands);
+  if (!photons && !has_lamps(meter.scene().lights())) explain_no_photons(run, bands);
   warn_of_sides(run, request, meter.scene());
   run.context.log().check();
   auto measured = measure(run, control, meter, photons, resume_file ? &*resume_file : nullptr);
@@ -394,11 +416,19 @@ Result flux(const JobRun& run) {
   result.facts.insert(
       result.facts.begin(),
       {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}});
-  if (photons) result.facts.push_back({"par_umol_m2_s", photons->incident});
+  size_t beside_csv = 0;
+  if (Table surfaces = surface_table(measurement, photons); !request.energy && !surfaces.columns.empty()) {
+    if (measurement.has_lamps) result.text += '\n' + to_text(surfaces);
+    beside_csv = measurement.has_lamps ? 0 : 1;
+    result.tables.push_back(std::move(surfaces));
+  }
+  if (photons) result.facts.push_back({measurement.has_lamps ? "par_umol_s" : "par_umol_m2_s", photons->incident});
   if (photons || are_weighted) result.facts.push_back({"irradiance", light});
+  result.facts.insert(result.facts.end(), provenance.begin(), provenance.end());
   run.log().info(
       fmt::format("{} paths; RMS standard error {:.2g}{}", measurement.paths, error,
-                  photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s), irradiance {}", photons->incident, light)
+                  photons && measurement.has_lamps ? fmt::format("; PAR of the lamps {:.5g} µmol/s", photons->incident)
+                  : photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s), irradiance {}", photons->incident, light)
                   : are_weighted ? fmt::format("; bands are weighted by the irradiance {}", light)
                                  : ""));
   if (request.energy) explain_no_leaves(run, *measurement.energy);
@@ -414,8 +444,24 @@ Result flux(const JobRun& run) {
                result);
     write_ply(run, measurement, *meter.organs());
   }
-  result.csv_tables = result.tables.size();
+  result.csv_tables = result.tables.size() - beside_csv;
   return result;
+}
+
+/// The job: measures the scene, or with --times under the light of each time.
+Result flux(const JobRun& run) {
+  if (run.args.flag("fluorescence")) return fluorescence_flux_result(run);
+  if (!run.args.given("by")) warn_if_nothing_is_kept(run);
+  const std::list<PlannedOutput> planned = planned_tables(run.args);
+  std::unique_ptr<FluxMeter> last;
+  if (!run.args.given("times"))
+    return measure_scene(
+        run, [&run] { return described_scene(run); }, last);
+  const SceneDescription description = described_scene(run);
+  return measure_times(run, read_time_series(run, description), description, [&](const SceneDescription& at_time) {
+    return measure_scene(
+        run, [&] { return at_time; }, last);
+  });
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ constexpr JobParam kParams[] = {
     kSeedParam,
     kCsvParam,
     kJsonParam,
+    kProvenanceParam,
     chart_param("plot", "Chart of f in the plane of incidence: .svg or .png."),
     chart_param("map", "Polar maps of f over both hemispheres: .svg or .png."),
     JobParam("map-scale", text, "Colour scale of the map.", {.default_value = "linear", .choices = kScales}),

@@ -36,6 +36,7 @@ constexpr JobParam kParams[] = {
     kSeedParam,
     kCsvParam,
     kJsonParam,
+    kProvenanceParam,
     chart_param("plot",
                 "Chart of R and T against wavelength or angle, or maps of fluorescence over excitation and "
                 "emission: .svg or .png."),

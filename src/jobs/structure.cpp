@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "jobs/support/provenance.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
 #include "jobs/support/time_limit.h"
@@ -55,6 +56,7 @@ constexpr JobParam kParams[] = {
     kStrictParam,
     kCsvParam,
     kJsonParam,
+    kProvenanceParam,
     chart_param("plot", "Chart against the zenith angle: .svg or .png."),
 };
 
@@ -173,6 +175,8 @@ Result structure(const JobRun& run) {
   Result result{.tables = {direction_table(m), canopy_table(m), angle_table(m)},
                 .csv_tables = 3,
                 .facts = {{"rays", double(m.rays)}, {"error", m.error()}, {"target_area", m.target_area}}};
+  for (Fact& fact : scene_provenance(meter->scene().scene(), meter->scene().description()))
+    result.facts.push_back(std::move(fact));
   if (m.sun_deg) {
     result.facts.push_back({"sun_zenith_deg", (*m.sun_deg)[0]});
     result.facts.push_back({"sun_azimuth_deg", (*m.sun_deg)[1]});

@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "core/emission.h"
 #include "core/error.h"
 #include "core/light.h"
 #include "core/math/direction_map.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr double kPiD = std::numbers::pi;
 
 /// Point light whose intensity an image specifies by direction.
-class ImagePointLight : public Light {
+class ImagePointLight : public Light, public EmissionSampler {
  public:
   explicit ImagePointLight(const Transform& world_from_light)
       : directions_(world_from_light), position_(world_from_light.point({})) {}
@@ -30,6 +31,14 @@ class ImagePointLight : public Light {
     return LightSample{along * (1 / distance2), wi, distance, 1};
   }
   bool is_delta() const override { return true; }
+  /// Directions are uniform over the sphere.
+  std::optional<EmittedRay> sample_emission(Vec2, Vec2 u, const SampledWavelengths& lambda) const override {
+    const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * kPi * u.y;
+    const Vec3 w{r * std::cos(phi), r * std::sin(phi), z};
+    const SampledSpectrum along = intensity(directions_.to_light(w), lambda);
+    if (along.is_black()) return {};
+    return EmittedRay{position_, w, along * (4 * kPi)};
+  }
   std::optional<LightBounds> bounds() const override { return LightBounds{.min = position_, .max = position_}; }
 
  protected:
@@ -121,7 +130,7 @@ class GoniometricLight final : public ImagePointLight {
       sum += double(texels_.back() * directions().solid_angle_factor({w.x, w.z, w.y}));
     }
     steradians_ = 4 * kPiD * sum / double(texels_.size());
-    scale_ = light_scale(p, "power", steradians_);
+    scale_ = lamp_scale(p, *spectrum_, steradians_, steradians_);
   }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * steradians_; }
   const Spectrum& emission() const override { return *spectrum_; }
@@ -163,6 +172,8 @@ constexpr Param kGoniometric[] = {
      .default_value = std::array<double, 3>{1, 1, 1},
      .doc = "Radiant intensity, multiplied by the image; spectra are normalised to luminance 1."},
     kLightPower,
+    kRadiantPower,
+    kPhotonFlux,
     kLightScale};
 
 }  // namespace

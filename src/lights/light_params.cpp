@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "spectra/wavelengths/radiant.h"
 
 namespace frond {
 
@@ -26,6 +27,25 @@ float light_scale(const Params& p, std::string_view total, double unit_total) {
     fail(p.where(total), "the light has the {} {:.4g} at scale 1: the factor to the stated one is beyond {:.2g}", total,
          unit_total, std::numeric_limits<float>::max());
   return float(scale);
+}
+
+std::optional<double> stated_power(const Params& p, const Spectrum& spectrum) {
+  const bool is_radiant = p.given("radiantpower"), is_photons = p.given("photonflux");
+  if (!is_radiant && !is_photons) return {};
+  const std::string_view name = is_photons ? "photonflux" : "radiantpower";
+  if ((is_radiant && is_photons) || p.given("power"))
+    fail(p.where(name), "\"{}\" and \"{}\" exclude each other", name, p.given("power") ? "power" : "radiantpower");
+  const double own = is_photons ? par_photons(spectrum) : radiant_integral(spectrum);
+  if (!(own > 0))
+    fail(p.where(name), "the spectrum has no {}", is_photons ? "light from 400 to 700 nm" : "light to scale");
+  return p.real(name) / own;
+}
+
+float lamp_scale(const Params& p, const Spectrum& spectrum, double unit_flux, double geometry) {
+  const std::optional<double> stated = stated_power(p, spectrum);
+  if (!stated) return light_scale(p, "power", unit_flux);
+  if (!(geometry > 0)) fail(p.where(), "the light is black: it has no power to scale");
+  return float(p.real("scale") * *stated / geometry);
 }
 
 }  // namespace frond

@@ -1,9 +1,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/emission.h"
 #include "core/error.h"
 #include "core/light.h"
 #include "core/math/sampling.h"
+#include "core/world.h"
 #include "lights/light_image.h"
 #include "lights/light_params.h"
 #include "spectra/cie.h"
@@ -18,6 +20,12 @@ Vec3 direction_of(const Params& p, const Transform& world_from_light) {
   const Vec3 from = p.vec3("from"), to = p.vec3("to");
   if (from == to) fail(p.where("to"), "\"from\" and \"to\" are the same point: the light has no direction");
   return normalize_any(world_from_light.vector(normalize_any(to - from)));
+}
+
+/// Returns a direction uniform in the cone around an axis; 1 - cosine of its half angle is `height`.
+Vec3 sample_cone(const Vec3& axis, float height, Vec2 u) {
+  const float z = 1 - u.x * height, r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * kPi * u.y;
+  return Frame::around(axis).to_world({r * std::cos(phi), r * std::sin(phi), z});
 }
 
 /// Parallel light. Its illuminance on a facing surface equals the radiance parameter.
@@ -43,11 +51,11 @@ class DistantLight final : public Light {
 };
 
 /// Uniform intensity; the total power is 4 pi times the intensity.
-class PointLight final : public Light {
+class PointLight final : public Light, public EmissionSampler {
  public:
   PointLight(const Params& p, const Transform& world_from_light)
       : spectrum_(p.spectrum("I")),
-        scale_(light_scale(p, "power", 4 * kPiD)),
+        scale_(lamp_scale(p, *spectrum_, 4 * kPiD, 4 * kPiD)),
         position_(world_from_light.point(p.vec3("from"))) {}
   /// A point within kLeastSquare of the light receives nothing, because the division would overflow.
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
@@ -60,6 +68,9 @@ class PointLight final : public Light {
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * 4 * kPiD; }
   std::optional<LightBounds> bounds() const override { return LightBounds{.min = position_, .max = position_}; }
   const Spectrum& emission() const override { return *spectrum_; }
+  std::optional<EmittedRay> sample_emission(Vec2, Vec2 u, const SampledWavelengths& lambda) const override {
+    return EmittedRay{position_, sample_cone({0, 0, 1}, 2, u), spectrum_->sample(lambda) * (scale_ * 4 * kPi)};
+  }
 
  private:
   SpectrumPtr spectrum_;
@@ -68,7 +79,7 @@ class PointLight final : public Light {
 };
 
 /// Full intensity inside the inner cone, 0 outside the outer cone, and a smoothstep of the cosine between.
-class SpotLight final : public Light {
+class SpotLight final : public Light, public EmissionSampler {
  public:
   SpotLight(const Params& p, const Transform& world_from_light)
       : spectrum_(p.spectrum("I")),
@@ -80,7 +91,7 @@ class SpotLight final : public Light {
     cos_outer_ = float(std::cos(cone * kPiD / 180));
     if (!(cos_outer_ < 1)) fail(p.where("coneangle"), "a \"coneangle\" of {} degrees lets no light through", cone);
     cos_inner_ = float(std::cos((cone - delta) * kPiD / 180));
-    scale_ = light_scale(p, "power", solid_angle());
+    scale_ = lamp_scale(p, *spectrum_, solid_angle(), solid_angle());
   }
   /// Returns nullopt outside of the cone.
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
@@ -99,6 +110,11 @@ class SpotLight final : public Light {
         .min = position_, .max = position_, .axis = axis_, .cos_spread = cos_outer_, .cos_reach = 1 - 0x1p-10f};
   }
   const Spectrum& emission() const override { return *spectrum_; }
+  std::optional<EmittedRay> sample_emission(Vec2, Vec2 u, const SampledWavelengths& lambda) const override {
+    const Vec3 w = sample_cone(axis_, 1 - cos_outer_, u);
+    const float factor = scale_ * intensity(dot(w, axis_)) * 2 * kPi * (1 - cos_outer_);
+    return EmittedRay{position_, w, spectrum_->sample(lambda) * factor};
+  }
 
  private:
   double solid_angle() const { return 2 * kPiD * ((1 - double(cos_inner_)) + double(cos_inner_ - cos_outer_) / 2); }
@@ -122,7 +138,8 @@ struct DiffuseEmission {
   double mean = 1;                  ///< mean luminance of the image
   double luminance = 0;             ///< mean luminance of the unscaled emission
   double scale = 1;
-  std::optional<double> power;  ///< of each light
+  std::optional<double> power;     ///< of each light
+  std::optional<double> spectral;  ///< spectral power of each light over `spectrum`
   bool two_sided = false;
   Location where;
 
@@ -138,12 +155,14 @@ struct DiffuseEmission {
       spectrum = p.spectrum("L");
     }
     luminance = photometric(*spectrum) * mean;
+    spectral = stated_power(p, *spectrum);
+    if (spectral && image) fail(where, "\"radiantpower\" and \"photonflux\" need a spectrum \"L\", not an image");
   }
   double sides() const { return two_sided ? 2 : 1; }
 };
 
 /// Emits the same radiance from all points of a surface, or the radiance of an image over (u, v).
-class DiffuseAreaLight final : public AreaLight {
+class DiffuseAreaLight final : public AreaLight, public EmissionSampler {
  public:
   DiffuseAreaLight(std::shared_ptr<const DiffuseEmission> emission, std::unique_ptr<const EmittingSurface> surface)
       : emission_(std::move(emission)), surface_(std::move(surface)), area_(float(surface_->area())) {
@@ -153,6 +172,8 @@ class DiffuseAreaLight final : public AreaLight {
     if (emission_->power)
       scale_ = float(emission_->scale * *emission_->power /
                      (emission_->sides() * kPiD * surface_->area() * emission_->mean));
+    if (emission_->spectral)
+      scale_ = float(emission_->scale * *emission_->spectral / (emission_->sides() * kPiD * surface_->area()));
   }
   /// Samples the surface by area.
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
@@ -191,6 +212,19 @@ class DiffuseAreaLight final : public AreaLight {
     return bounds;
   }
   const Spectrum& emission() const override { return *emission_->spectrum; }
+  std::optional<EmittedRay> sample_emission(Vec2 point, Vec2 u, const SampledWavelengths& lambda) const override {
+    const auto [on_light, uv, weight] = surface_->sample(point);
+    const auto sides = float(emission_->sides());
+    const bool is_back = emission_->two_sided && u.x >= 0.5f;
+    if (emission_->two_sided) u.x = is_back ? 2 * u.x - 1 : 2 * u.x;
+    const Vec3 w = Frame::around(is_back ? -on_light.ng : on_light.ng).to_world(sample_cosine_hemisphere(u));
+    const SampledSpectrum emitted = radiance({on_light.p, on_light.ng, uv}, w, lambda);
+    if (emitted.is_black()) return {};
+    const Vec3& p = on_light.p;
+    Hit hit{};
+    hit.p = p, hit.ng = on_light.ng, hit.extent = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return EmittedRay{offset_origin(hit, w), w, emitted * (weight * sides * kPi * area_)};
+  }
 
  private:
   /// Converts the density over area to solid angle.
@@ -241,10 +275,12 @@ constexpr Param kDistant[] = {
      .kind = ParamKind::real,
      .unit = "lx",
      .doc = "Illuminance of a surface that faces the light, to which the light is scaled; 0 or less: not given."}};
-constexpr Param kPoint[] = {kIntensity, kLightScale, kLightPower, kFrom};
+constexpr Param kPoint[] = {kIntensity, kLightScale, kLightPower, kRadiantPower, kPhotonFlux, kFrom};
 constexpr Param kSpot[] = {kIntensity,
                            kLightScale,
                            kLightPower,
+                           kRadiantPower,
+                           kPhotonFlux,
                            kFrom,
                            kTo,
                            {.name = "coneangle",
@@ -265,6 +301,8 @@ constexpr Param kDiffuseArea[] = {
     {.name = "filename", .kind = ParamKind::string, .doc = "Image over (u, v), top at v = 1, instead of L."},
     kLightScale,
     kLightPower,
+    kRadiantPower,
+    kPhotonFlux,
     {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Emit from both sides."}};
 
 std::unique_ptr<AreaEmission> make_diffuse_area(const Params& p) { return std::make_unique<DiffuseAreaEmission>(p); }

@@ -15,6 +15,7 @@
 #include "radiometry/photons.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/sums_file.h"
+#include "scene/geometry/shape_emitter.h"
 #include "scene/leaf_models.h"
 #include "system/machine.h"
 
@@ -72,6 +73,15 @@ MeanError organ_mean(const Moment& moment, uint64_t paths) {
   MeanError mean = moment.mean(paths);
   if (moment.sum == 0) mean.standard_error = NAN;
   return mean;
+}
+
+/// Returns the one-sided areas of materials by index, NaN for those of instances: their areas are measured one by one.
+std::vector<double> areas_of_materials(const Geometry& geometry, size_t materials) {
+  std::vector<double> areas(materials);
+  geometry.visit_surfaces([&](const Surface& surface, const AffineMap&, uint64_t instance) {
+    areas[surface.material] += instance > 0 ? std::numeric_limits<double>::quiet_NaN() : ShapeEmitter(surface).area();
+  });
+  return areas;
 }
 
 }  // namespace
@@ -163,7 +173,9 @@ class FluxMeter::Block {
     const auto [entry, weight] = state_.entry.sample(d, u, random);
     const Scene& scene = state_.scene();
     const Target at_entry{.x0 = 0, .x1 = 0, .y0 = 0, .y1 = 0, .z = entry.z};
-    Ray ray{to_float(entry - d * distance_above(scene, at_entry, -d.z) - scene.origin()), light->direction};
+    Ray ray{
+        light->origin ? *light->origin : to_float(entry - d * distance_above(scene, at_entry, -d.z) - scene.origin()),
+        light->direction};
     SampledSpectrum share = light->weight;
     if (state_.entry.bottom) share *= SampledSpectrum(weight);
     constexpr int kFirstRoulette = 3, kPolled = 256;
@@ -277,13 +289,23 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   const Scene& scene = loaded.scene();
   if (request.energy && scene.wavelengths().bands()[0].response.empty())
     fail({}, "energy is measured in bands with responses: single wavelengths have none");
-  const Target target = request.target ? *request.target : default_target(scene, session.log());
-  check_target(scene, target);
+  const bool lamps = has_lamps(scene.lights());
+  if (lamps && (request.target || request.sides))
+    fail({}, "a target is the rectangle through which light from outside enters: lamps in the scene need none");
+  if (lamps && request.energy)
+    fail({},
+         "bands in W/m2 are those of light from outside: under lamps single wavelengths from 400 to 700 nm give the "
+         "photons on each surface");
+  // The power of lamps is not that of an area.
+  const Target target = request.target ? *request.target
+                        : lamps        ? Target{0, 1, 0, 1, 0}
+                                       : default_target(scene, session.log());
+  if (!lamps) check_target(scene, target);
   std::vector<Interval> ranges_nm = request.ranges_nm;
   if (request.energy && ranges_nm.empty())
     for (const Band& band : scene.wavelengths().bands())
       ranges_nm.push_back({band.response.front().nm, band.response.back().nm});
-  HorizontalIrradiance irradiance(loaded, range_of(ranges_nm));
+  HorizontalIrradiance irradiance(loaded, range_of(ranges_nm), true);
   LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance, request.ranges_nm);
   IncidentLight light(scene, std::move(irradiance), wavelengths.sample_for_index(0, 0.5f));
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
@@ -399,6 +421,8 @@ FluxMeasurement FluxMeter::read() const {
                               .target_area = s.entry.target_area(),
                               .by_organ = {},
                               .areas = {}};
+  measurement.has_lamps = has_lamps(s.scene().lights());
+  const std::vector<double> areas = areas_of_materials(s.scene().geometry(), s.materials);
   for (const uint32_t m : s.reflectors) {
     FluxMeasurement::OfMaterial one{name_of(s.loaded.description().materials[m]), shares(flux_quantity(m, kAbsorbed)),
                                     shares(flux_quantity(m, kIncident)), shares(flux_quantity(m, kUncollided))};
@@ -406,6 +430,7 @@ FluxMeasurement FluxMeter::read() const {
     if (!one.is_hit)
       for (auto* of_material : {&one.absorbed, &one.incident, &one.uncollided})
         for (MeanError& share : *of_material) share.standard_error = NAN;
+    one.area = areas[m];
     measurement.materials.push_back(std::move(one));
   }
   if (s.channels.splits) measurement.energy = read_energy();

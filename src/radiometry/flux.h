@@ -43,6 +43,7 @@ struct FluxMeasurement {
     std::vector<MeanError> incident;    ///< light on either side; repeated incidence counts each time
     std::vector<MeanError> uncollided;  ///< the share of `incident` without an earlier interaction
     bool is_hit = true;                 ///< by any path; else the shares are 0 with an unknown error, NaN
+    double area = 0;  ///< one-sided, in scene units squared; NaN if surfaces of it are parts of instances
   };
   std::vector<Band> bands;
   std::vector<MeanError> reflected;    ///< leaves upward
@@ -50,7 +51,8 @@ struct FluxMeasurement {
   std::vector<OfMaterial> materials;   ///< materials of surfaces
   std::vector<MeanError> sum;          ///< sum of all absorbed and leaving light: 1 up to noise
   uint64_t paths = 0;
-  double target_area = 0;  ///< in scene units squared
+  double target_area = 0;  ///< in scene units squared; 1 for lamps, whose shares are of their power
+  bool has_lamps = false;  ///< the light is that of lamps in the scene
   /// Absorbed by each organ, by band; empty unless requested. The error is NaN where no path was absorbed.
   std::vector<MeanError> by_organ;
   std::vector<float> areas;  ///< one-sided area of each organ; empty unless requested
@@ -59,8 +61,9 @@ struct FluxMeasurement {
   double error() const;
 };
 
-/// Traces light from a scene's sun and sky through a horizontal rectangle until it is absorbed or leaves. BSDFs are
-/// evaluated for the actual direction of the light, regardless of the scene's incident direction: energy is conserved.
+/// Traces light from a scene's sun and sky through a horizontal rectangle, or light of the lamps in a scene, until it
+/// is absorbed or leaves. BSDFs are evaluated for the actual direction of the light, regardless of the scene's incident
+/// direction: energy is conserved.
 class FluxMeter {
  public:
   /// Throws InputError, also if there are too many organs to measure each. `other`: a scene with the same geometry,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/emission.h"
 #include "core/error.h"
 #include "core/fluorescence.h"
 #include "core/stop.h"
@@ -61,6 +62,19 @@ LaneIrradiance irradiance(const Light& light, const SampledWavelengths& lambda) 
   return sum;
 }
 
+/// Returns the spectral power of a lamp in the scene at up to kLanes wavelengths.
+std::array<double, kLanes> power(const EmissionSampler& lamp, const SampledWavelengths& lambda) {
+  constexpr int kRays = 1 << 13;
+  std::array<double, kLanes> sum{};
+  RandomStream random(1);
+  for (int i = 0; i < kRays; ++i) {
+    const Vec2 point{random.uniform(), random.uniform()};
+    const auto ray = lamp.sample_emission(point, {(float(i) + 0.5f) / kRays, radical_inverse(uint32_t(i))}, lambda);
+    for (size_t lane = 0; ray && lane < kLanes; ++lane) sum[lane] += double(ray->power.v[lane]) / kRays;
+  }
+  return sum;
+}
+
 /// Irradiance of one light on the plane at each wavelength of a list.
 struct ListedIrradiance {
   std::vector<double> all, direct;
@@ -71,7 +85,8 @@ ListedIrradiance irradiance(const Light& light, std::span<const double> nm) {
   for (size_t begin = 0; begin < nm.size(); begin += kLanes) {
     check_stop();
     const SampledWavelengths lambda = lanes_at(nm.subspan(begin));
-    const LaneIrradiance four = irradiance(light, lambda);
+    const auto* lamp = light.is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(&light);
+    const LaneIrradiance four = lamp ? LaneIrradiance{power(*lamp, lambda), {}} : irradiance(light, lambda);
     values.all.insert(values.all.end(), four.all.begin(), four.all.begin() + lambda.count);
     values.direct.insert(values.direct.end(), four.direct.begin(), four.direct.begin() + lambda.count);
   }
@@ -121,13 +136,24 @@ SpectrumPtr spectrum_of(std::span<const double> nm, std::span<const double> valu
   return std::make_shared<TabulatedSpectrum>(points);
 }
 
-/// Throws InputError, which names the light, unless all lights are outside the scene.
-void check_distant(const Scene& scene) {
-  for (const Light* light : scene.lights())
-    if (!light->is_distant())
+/// Throws InputError, which names the light, unless all lights are outside the scene, or if they may be, all are lamps
+/// in it.
+void check_lights(const Scene& scene, bool may_be_lamps) {
+  const bool lamps = may_be_lamps && has_lamps(scene.lights());
+  for (const Light* light : scene.lights()) {
+    const bool is_lamp = !light->is_distant() && dynamic_cast<const EmissionSampler*>(light);
+    if (lamps && !is_lamp)
       fail(scene.light_where(size_t(light->index())),
-           "brf and flux need lights outside the scene: \"distant\", \"sky\", or \"infinite\" without a portal; this "
-           "light has a position in it");
+           "flux measures lights outside the scene or lamps in it, not both together: this light is no lamp; measure "
+           "them "
+           "one after the other and add the results");
+    if (!lamps && !light->is_distant())
+      fail(scene.light_where(size_t(light->index())),
+           "{} lights outside the scene: \"distant\", \"sky\", or \"infinite\" without a portal; this light has a "
+           "position "
+           "in it",
+           may_be_lamps ? "flux needs lamps that can be sampled, or" : "brf needs");
+  }
 }
 
 }  // namespace
@@ -142,8 +168,14 @@ bool is_direct(const Light& light, const Vec3& toward) {
   return double(dot(apart, apart)) < chord * chord;
 }
 
-HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm) {
-  check_distant(loaded.scene());
+bool has_lamps(std::span<const Light* const> lights) {
+  return std::ranges::any_of(
+      lights, [](const Light* light) { return !light->is_distant() && dynamic_cast<const EmissionSampler*>(light); });
+}
+
+HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm,
+                                           bool may_be_lamps) {
+  check_lights(loaded.scene(), may_be_lamps);
   const auto lights = loaded.scene().lights();
   const WavelengthStrategy& wavelengths = loaded.scene().wavelengths();
   const auto listed = wavelengths.listed_nm();
@@ -176,8 +208,9 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std:
   for (const Band& band : wavelengths.bands()) {
     bands_.push_back(band.response.empty() ? at(double(float(band.nm))) : mean_under(band.response, *spectrum_));
     if (!(bands_.back() > 0 || is_of_fluorescence(band)))
-      fail(loaded.description().lights.empty() ? Location{} : loaded.description().lights[0].plugin.where,
-           "no light falls on the scene from above, from +z, {}", place_of(band));
+      fail(loaded.description().lights.empty() ? Location{} : loaded.description().lights[0].plugin.where, "{} {}",
+           has_lamps(lights) ? "the lamps have no light" : "no light falls on the scene from above, from +z,",
+           place_of(band));
   }
 }
 

@@ -23,9 +23,11 @@ bool is_direct(const Light& light, const Vec3& toward);
 class HorizontalIrradiance {
  public:
   /// Extended lights are integrated with 65,536 directions, the same on every machine. `range_nm`: to be known beyond
-  /// the wavelengths of the scene's bands. Throws InputError for a light at a finite distance, or whose data end within
-  /// the range, or if no light comes from above in a band of the scene.
-  explicit HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm = {});
+  /// the wavelengths of the scene's bands. With `may_be_lamps` all lights may be lamps in the scene (has_lamps): their
+  /// spectral power takes the place of the irradiance. Throws InputError for another light at a finite distance, or
+  /// whose data end within the range, or if no light comes from above in a band of the scene.
+  explicit HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm = {},
+                                bool may_be_lamps = false);
 
   /// Returns the irradiance at up to kLanes wavelengths.
   SampledSpectrum at(const SampledWavelengths& lambda) const;
@@ -47,7 +49,11 @@ class HorizontalIrradiance {
   SpectrumPtr spectrum_, direct_;
 };
 
-/// Returns the irradiance between two wavelengths as a spectrum with all points of the lights' own tables.
+/// Returns whether a light is a lamp in the scene (EmissionSampler).
+bool has_lamps(std::span<const Light* const> lights);
+
+/// Returns the irradiance, or the spectral power of lamps, between two wavelengths as a spectrum with all points of the
+/// lights' own tables.
 SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm);
 
 /// Returns the direction toward the scene's only directional light or sun (Light::sun), if it is above the horizon;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/emission.h"
 #include "core/math/sampling.h"
 
 namespace frond {
@@ -65,13 +66,20 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
   double choice = random.uniform_double();
   size_t i = 0;
   while (i + 1 < shares.size() && choice >= shares[i]) choice -= shares[i++];
-  const auto s = sample_light(*lights_[i], cosine_sampled_[i], {random.uniform(), random.uniform()}, lambda);
+  const Vec2 u{random.uniform(), random.uniform()};
+  std::optional<Sample> s;
+  if (const auto* lamp = lights_[i]->is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(lights_[i])) {
+    const auto ray = lamp->sample_emission({random.uniform(), random.uniform()}, u, lambda);
+    if (ray) s = Sample{ray->direction, ray->power, ray->origin};
+  } else {
+    s = sample_light(*lights_[i], cosine_sampled_[i], u, lambda);
+  }
   if (!s) return {};
   SampledSpectrum weight;
   const SampledSpectrum irradiance = irradiance_.at(lambda);
   for (int lane = 0; lane < lambda.count; ++lane)
     if (irradiance[lane] > 0) weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
-  return Sample{s->direction, weight, frond::is_direct(*lights_[i], -s->direction)};
+  return Sample{s->direction, weight, frond::is_direct(*lights_[i], -s->direction), s->origin};
 }
 
 EntryBox::Point EntryBox::sample(const Vec3d& d, Vec2 u, RandomStream& random) const {

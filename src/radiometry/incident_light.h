@@ -16,9 +16,10 @@ class IncidentLight {
   IncidentLight(const Scene& scene, HorizontalIrradiance irradiance, const SampledWavelengths& lambda);
 
   struct Sample {
-    Vec3 direction;          ///< direction of propagation, downward
-    SampledSpectrum weight;  ///< mean 1
-    bool is_direct = false;  ///< as frond::is_direct
+    Vec3 direction;                   ///< direction of propagation, downward
+    SampledSpectrum weight;           ///< mean 1
+    bool is_direct = false;           ///< as frond::is_direct
+    std::optional<Vec3> origin = {};  ///< of light of a lamp in the scene
   };
   /// Returns a direction of one of the lights; nullopt if the sample fails.
   std::optional<Sample> sample(RandomStream& random, const SampledWavelengths& lambda) const;

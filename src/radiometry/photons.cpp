@@ -10,8 +10,6 @@
 namespace frond {
 namespace {
 
-constexpr Interval kPar_nm{400, 700};
-
 /// Returns the bands in and next to the interval, in ascending order of wavelength.
 std::vector<size_t> bands_of_par(std::span<const Band> bands) {
   constexpr double kSlack = 10;

@@ -7,12 +7,9 @@
 #include "core/spectrum.h"
 #include "core/wavelengths.h"
 #include "instruments/errors/statistics.h"
+#include "spectra/wavelengths/radiant.h"
 
 namespace frond {
-
-/// Energy of photons: J of light at a wavelength in nm are J nm / kPhotonEnergy umol of photons. Planck constant times
-/// speed of light times Avogadro constant, J nm / umol (exact since 2019).
-inline constexpr double kPhotonEnergy = 6.62607015e-34 * 299792458 * 6.02214076e23 * 1e9 * 1e-6;
 
 /// Photosynthetically active radiation (PAR), 400 to 700 nm: converts shares of light by band to shares of photons.
 struct PhotonWeights {

@@ -209,6 +209,8 @@ StructureMeter::~StructureMeter() = default;
 
 uint64_t StructureMeter::rays() const { return state_->rays; }
 
+const LoadedScene& StructureMeter::scene() const { return state_->loaded; }
+
 /// Blocks are traced in rounds; their sums are added in order, so that the result does not depend on threads.
 void StructureMeter::trace(uint64_t rays, ThreadPool& pool, const RenderControl& control) {
   constexpr uint64_t kBlocks = 64;

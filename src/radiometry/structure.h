@@ -55,6 +55,7 @@ class StructureMeter {
   /// Returns the measurement so far.
   StructureMeasurement read() const;
   uint64_t rays() const;
+  const LoadedScene& scene() const;
 
  private:
   struct State;

@@ -40,6 +40,7 @@ struct LightTable {
   std::vector<Location> where;                       ///< of each of `all` in the scene file
   std::vector<const EnvironmentLight*> environment;  ///< the infinite ones among them
   std::vector<SurfaceLights> of_surface;             ///< by index in Geometry::surfaces
+  std::vector<ParsedPlugin> plugins;                 ///< that the description's lights were created from
 
   void add(std::unique_ptr<Light> light, const Location& at);
 };
@@ -63,8 +64,8 @@ class Scene final : public World {
   static Interval shutter(const SceneSettings& description, const Registry& registry, const Log& log = silent_log());
 
   /// `cache`: folder for computed tables; empty: none are stored. `other`: a scene that differs only in materials,
-  /// wavelengths, integrator and view; its geometry is shared regardless of the described shapes, and so are equal
-  /// lights and materials. `shared` holds work common to such scenes. Throws InputError.
+  /// parameters of lights, wavelengths, integrator and view; its geometry is shared regardless of the described shapes,
+  /// and so are equal lights and materials. `shared` holds work common to such scenes. Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
         const std::filesystem::path& cache = {}, const Scene* other = nullptr, SharedWork* shared = nullptr);
   ~Scene() override;

@@ -86,11 +86,13 @@ class SceneBuilder {
     problems_.check();
     scene_.geometry_ = other.geometry_;
     const bool same_wavelengths = scene_.wavelengths_name_ == other.wavelengths_name_;
-    if (same_wavelengths) {
-      scene_.lights_ = other.lights_;
+    if (same_wavelengths)
       scene_.media_ = other.media_;
-    } else {
+    else
       build_media(*resolver);
+    if (same_wavelengths && has_lights_of(other)) {
+      scene_.lights_ = other.lights_;
+    } else {
       build_lights(*resolver);
       build_area_lights(*resolver);
     }
@@ -364,11 +366,18 @@ class SceneBuilder {
     return {};
   }
 
+  /// Returns whether the described lights, which are the same ones, have the parameters of those of `other`.
+  bool has_lights_of(const Scene& other) const {
+    return std::ranges::equal(description_.lights, other.lights_->plugins, same_plugin, &LightDescription::plugin);
+  }
+
   /// Lights that fail are reported together.
   void build_lights(SceneResolver& resolver) {
-    for (const LightDescription& light : description_.lights)
+    for (const LightDescription& light : description_.lights) {
+      lights_->plugins.push_back(light.plugin);
       problems_.attempt(
           [&] { add(make(registry_.lights, light.plugin, resolver, light.world_from_light), light.plugin.where); });
+    }
   }
 
   const Light* add(std::unique_ptr<Light> light, const Location& where) {

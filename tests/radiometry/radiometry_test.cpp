@@ -96,7 +96,7 @@ TEST_F(Radiometry, TheIrradianceOfSunAndSkyIsTheClosedForm) {
   EXPECT_NEAR(irradiance(kSun + kSky), one * (std::numbers::pi + 0.8660254), 2e-4 * one);
   EXPECT_THAT(
       error_of([&] { irradiance("LightSource \"point\" \"spectrum I\" \"stdillum-E\" \"point3 from\" [0 0 3]\n"); }),
-      HasSubstr("scene.pbrt:3:13: brf and flux need lights outside the scene"));
+      HasSubstr("scene.pbrt:3:13: brf needs lights outside the scene"));
   EXPECT_THAT(
       error_of([&] {
         irradiance(

@@ -44,6 +44,10 @@ inline constexpr JobParam kCsvParam("csv", ArgumentKind::text, "CSV file to writ
                                     {.type = "FILE", .path = PathUse::write});
 inline constexpr JobParam kJsonParam("json", ArgumentKind::text, "JSON file to write; - is standard output.",
                                      {.type = "FILE", .path = PathUse::write});
+inline constexpr JobParam kProvenanceParam(
+    "provenance", ArgumentKind::flag,
+    "Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them.",
+    {.needs = "csv"});
 /// Returns a parameter for a chart to write, .svg or .png. `doc` names the chart's content.
 constexpr JobParam chart_param(std::string_view name, std::string_view doc, std::string_view aliases = "") {
   return JobParam(name, ArgumentKind::text, doc, {.type = "CHART", .aliases = aliases, .path = PathUse::write});

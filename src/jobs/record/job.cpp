@@ -81,6 +81,23 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
   }
 }
 
+/// Adds the facts by which a measurement can be repeated: version, command, and seed; scenes add their hash. With
+/// --provenance they are comments of CSV files, too.
+void add_provenance(const JobInfo& job, const JobRun& run, Result& result) {
+  if (job.group != "Measure") return;
+  const auto has = [&result](std::string_view name) {
+    return std::ranges::find(result.facts, name, &Fact::name) != result.facts.end();
+  };
+  result.facts.push_back({"version", std::string(FROND_VERSION)});
+  result.facts.push_back({"command", identifying_command(job, run.args)});
+  if (!has("seed") && run.args.declares("seed"))
+    result.facts.push_back({"seed", std::to_string(run.args.seed("seed"))});
+  if (!run.args.declares("provenance") || !run.args.flag("provenance")) return;
+  for (const Fact& fact : result.facts)
+    if (fact.name == "version" || fact.name == "command" || fact.name == "seed" || fact.name == "scene_hash")
+      result.notes.push_back(fact.name + ": " + std::get<std::string>(fact.value));
+}
+
 /// Warns of options whose numbers are probably all in another unit.
 void warn_of_units(const JobRun& run) {
   for (const JobParam* p : run.args.params()) {
@@ -110,6 +127,7 @@ Result run_job(const JobInfo& job, const JobRun& run) {
     return job.run(run);
   }();
   log.check();
+  add_provenance(job, run, result);
   if (!result.stopped) write_outputs(job, run, result);
   return result;
 }

@@ -59,6 +59,23 @@ std::string share_text(const FluxMeasurement& measurement, const std::optional<P
   return to_text(table);
 }
 
+Table surface_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
+  Table table{"surfaces"};
+  for (const FluxMeasurement::OfMaterial& m : measurement.materials) {
+    if (!photons || !(m.area > 0)) continue;
+    const double factor = photons->incident * measurement.target_area / m.area;
+    const auto by_area = [&](const std::vector<MeanError>& shares) {
+      const MeanError share = photons->share(shares);
+      return MeanError{share.mean * factor, share.standard_error * factor};
+    };
+    table.add("material", m.name);
+    table.add("area", m.area);
+    table.add("incident_umol_m2_s", by_area(m.incident));
+    table.add("absorbed_umol_m2_s", by_area(m.absorbed));
+  }
+  return table;
+}
+
 Table instance_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   const size_t bands = measurement.bands.size(), count = measurement.areas.size();
   Table table{"instances"};
