@@ -4,6 +4,7 @@ import inspect
 import re
 
 from . import _frond
+from ._dataset import dataset, write
 from ._records import JOBS, NUMERIC, arguments, by_alias, python_name
 from ._session import Scene, _show, checked_session
 from ._values import named
@@ -82,7 +83,8 @@ class Result:
     """The result of a job: `tables` {name: table}, single values `facts` {name: value}, `notes` (a list of texts), the `text`
     that the command prints, and its exit `code`.
 
-    A table is a pandas.DataFrame if pandas is installed, else a dictionary of columns. `table` is the first table.
+    A table is a pandas.DataFrame if pandas is installed, else a dictionary of columns. `table` is the first table. `provenance` has
+    the facts by which a measurement can be repeated: version, command, seed and the scene's hash; a DataFrame has them in `attrs`.
     """
 
     def __init__(self, found):
@@ -90,24 +92,39 @@ class Result:
         self.notes, self.text, self.code = found["notes"], found["text"], found["code"]
 
     @property
+    def provenance(self):
+        return {name: self.facts[name] for name in ("version", "command", "seed", "scene_hash") if name in self.facts}
+
+    @property
     def tables(self):
-        return {name: _table(columns) for name, columns in self.columns.items()}
+        return {name: _table(columns, self.provenance) for name, columns in self.columns.items()}
 
     @property
     def table(self):
-        return _table(next(iter(self.columns.values())))
+        return _table(next(iter(self.columns.values())), self.provenance)
+
+    def to_xarray(self, *tables):
+        """Returns the first table, or those named, as an xarray.Dataset with the attributes of the CF conventions: dimensions,
+        units, and standard errors as ancillary variables. Needs xarray."""
+        return dataset({name: self.columns[name] for name in tables or list(self.columns)[:1]}, self.provenance)
+
+    def to_netcdf(self, path, *tables):
+        """Writes `to_xarray` as a NetCDF file. Needs xarray and netCDF4, h5netcdf or scipy."""
+        write(self.to_xarray(*tables), path)
 
     def __str__(self):
         return self.text
 
 
-def _table(columns):
+def _table(columns, provenance=None):
     try:
         import pandas
     except ImportError:
         import numpy
         return {name: numpy.asarray(values) for name, values in columns.items()}
-    return pandas.DataFrame(columns)
+    table = pandas.DataFrame(columns)
+    table.attrs.update(provenance or {})
+    return table
 
 
 def run(name, /, *, progress=None, session=None, **given):
