@@ -240,7 +240,8 @@ std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescri
   check_physical(description, run);
   if (irradiance) return PhotonWeights::from_irradiance(bands, *irradiance);
   if (photon_light_name(run, description) == kOfScene)
-    return PhotonWeights::from_irradiance(bands, *horizontal_irradiance(meter.scene(), {400, 700}));
+    return PhotonWeights::from_irradiance(bands,
+                                          *horizontal_irradiance(meter.scene(), {400, 700}, run.session().pool()));
   return PhotonWeights::from_irradiance(bands, *named_spectrum(kOfPhotons, {}));
 }
 

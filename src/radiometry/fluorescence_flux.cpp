@@ -309,7 +309,7 @@ FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription 
   for (size_t i = 0; i < materials; ++i) all.push_back(scene.material(i));
   auto by_material =
       fluorescence_by_material(all, {scene.wavelengths(), session.pool(), session.log(), session.cache()});
-  SpectrumPtr irradiance = horizontal_irradiance(scene, kExcitation_nm);
+  SpectrumPtr irradiance = horizontal_irradiance(scene, kExcitation_nm, session.pool());
   const double incident = photons_of(*irradiance);
   if (!(incident > 0)) fail({}, "the scene has no light from 400 to 750 nm, which excites fluorescence");
   ExcitationSampler excitation = excitation_of(by_material, *irradiance);

@@ -283,6 +283,10 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
     fail(description.media.front().plugin.where,
          "flux does not trace participating media; brf and render do, by integrator \"volpath\"");
   prepare_for_radiometry(session.registry(), request.wavelengths, request.period, false, description);
+  // Light paths do not use the integrator: pilots of its light samples would be wasted.
+  ParsedPlugin& integrator = description.integrator;
+  if (find_param(session.registry().integrators.get(integrator.name, integrator.where), "lightsamples"))
+    set_param(integrator.params, parsed_numbers("integer", "lightsamples", {1}));
   std::vector<uint8_t> is_leaf = leaves_of(description, request, session.registry());
   LoadedScene loaded = session.load(
       std::move(description), {.command = measurement_text(text_of(request), request.target, request.period)}, other);

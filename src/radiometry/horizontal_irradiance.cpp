@@ -7,7 +7,6 @@
 #include "core/emission.h"
 #include "core/error.h"
 #include "core/fluorescence.h"
-#include "core/stop.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_label.h"
 #include "spectra/wavelengths/response_sampler.h"
@@ -80,16 +79,16 @@ struct ListedIrradiance {
   std::vector<double> all, direct;
 };
 
-ListedIrradiance irradiance(const Light& light, std::span<const double> nm) {
-  ListedIrradiance values;
-  for (size_t begin = 0; begin < nm.size(); begin += kLanes) {
-    check_stop();
+ListedIrradiance irradiance(const Light& light, std::span<const double> nm, const ThreadPool& pool) {
+  ListedIrradiance values{std::vector<double>(nm.size()), std::vector<double>(nm.size())};
+  const auto* lamp = light.is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(&light);
+  pool.for_each(int64_t((nm.size() + kLanes - 1) / kLanes), [&](int64_t group, int) {
+    const size_t begin = size_t(group) * kLanes;
     const SampledWavelengths lambda = lanes_at(nm.subspan(begin));
-    const auto* lamp = light.is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(&light);
     const LaneIrradiance four = lamp ? LaneIrradiance{power(*lamp, lambda), {}} : irradiance(light, lambda);
-    values.all.insert(values.all.end(), four.all.begin(), four.all.begin() + lambda.count);
-    values.direct.insert(values.direct.end(), four.direct.begin(), four.direct.begin() + lambda.count);
-  }
+    std::copy_n(four.all.begin(), lambda.count, values.all.begin() + int64_t(begin));
+    std::copy_n(four.direct.begin(), lambda.count, values.direct.begin() + int64_t(begin));
+  });
   return values;
 }
 
@@ -106,14 +105,14 @@ std::vector<double> points_nm(std::span<const Light* const> lights, Interval ran
 /// the directions of a sky.
 ListedIrradiance irradiance_by_ratio(const Light& light, const std::vector<double>& nm) {
   constexpr double kStep_nm = 10;
-  if (light.is_delta()) return irradiance(light, nm);
+  if (light.is_delta()) return irradiance(light, nm, ThreadPool(1));
   std::vector<double> few{nm.front(), nm.back()};
   append_points_nm(light.emission(), few);
   for (double at = std::ceil(nm.front() / kStep_nm) * kStep_nm; at < nm.back(); at += kStep_nm) few.push_back(at);
   std::erase_if(few, [&nm](double at) { return at < nm.front() || at > nm.back(); });
   std::ranges::sort(few);
   few.erase(std::ranges::unique(few).begin(), few.end());
-  const ListedIrradiance known = irradiance(light, few);
+  const ListedIrradiance known = irradiance(light, few, ThreadPool(1));
   const auto emitted = [&light](double at) { return double(light.emission().at(float(at))); };
   ListedIrradiance values;
   size_t above = 1;
@@ -194,7 +193,7 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std:
   std::vector<double> direct(nm_.size());
   std::vector<std::vector<double>> each;
   for (const Light* light : lights) {
-    ListedIrradiance of_light = range_nm ? irradiance_by_ratio(*light, nm_) : irradiance(*light, nm_);
+    ListedIrradiance of_light = range_nm ? irradiance_by_ratio(*light, nm_) : irradiance(*light, nm_, ThreadPool(1));
     for (size_t i = 0; i < nm_.size(); ++i) values_[i] += of_light.all[i], direct[i] += of_light.direct[i];
     each.push_back(std::move(of_light.all));
   }
@@ -214,11 +213,11 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std:
   }
 }
 
-SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm) {
+SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm, const ThreadPool& pool) {
   const std::vector<double> points = points_nm(scene.lights(), nm);
   std::vector<double> values(points.size());
   for (const Light* light : scene.lights()) {
-    const std::vector<double> of_light = irradiance(*light, points).all;
+    const std::vector<double> of_light = irradiance(*light, points, pool).all;
     for (size_t i = 0; i < points.size(); ++i) values[i] += of_light[i];
   }
   return spectrum_of(points, values);

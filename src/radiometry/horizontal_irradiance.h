@@ -54,7 +54,7 @@ bool has_lamps(std::span<const Light* const> lights);
 
 /// Returns the irradiance, or the spectral power of lamps, between two wavelengths as a spectrum with all points of the
 /// lights' own tables.
-SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm);
+SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm, const ThreadPool& pool);
 
 /// Returns the direction toward the scene's only directional light or sun (Light::sun), if it is above the horizon;
 /// nullopt if there is none or more than one.

@@ -107,7 +107,7 @@ TEST_F(SceneFluorescence, ALambertianLeafHasTheRadianceOfItsMatrices) {
   for (const std::string& light : {kSun, kSky}) {
     const LoadedScene loaded = session.load(description(light + kReplayed + square("leaf", 0),
                                                         "Option \"string wavelengths\" \"bands,fluorescence=685\"\n"));
-    const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm);
+    const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm, ThreadPool(2));
     const std::vector<ViewDirection> views{{0, 0}, {-60, 0}, {45, 90}};
     const BrfMeasurement measured = brf(light + kReplayed + square("leaf", 0), views, 64);
     for (size_t view = 0; view < views.size(); ++view)
@@ -135,7 +135,7 @@ TEST_F(SceneFluorescence, ALeafInTheSunHasTheRadianceOfItsOperator) {
   const auto by_material =
       fluorescence_by_material(materials, {loaded.scene().wavelengths(), session.pool(), silent_log(), {}});
   const auto fluorescence = *std::ranges::find_if(by_material, [](const auto& f) { return f != nullptr; });
-  const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm);
+  const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm, ThreadPool(2));
   const Vec3 wi{-0.5f, 0, 0.8660254f};
   const std::vector<ViewDirection> views{{0, 0}, {-60, 0}, {45, 90}};
   const BrfMeasurement measured = brf(kSun + kLeaf + square("leaf", 0), views, 256);

@@ -315,7 +315,7 @@ TEST_F(WeightedBands, TheScenesIrradianceHasTheLinesOfItsLamps) {
       plane(sun("\"" + path("lamp.spd") + "\"") + "LightSource \"infinite\" \"spectrum L\" [300 1 2500 1]\n");
   d.options.push_back({"string", "wavelengths", {}, {}, std::vector<std::string>{"bands,wavelengths=550"}});
   const LoadedScene loaded = session.load(std::move(d));
-  const SpectrumPtr e = horizontal_irradiance(loaded.scene(), {400, 700});
+  const SpectrumPtr e = horizontal_irradiance(loaded.scene(), {400, 700}, ThreadPool(2));
   const double base = double(e->at(500)), line = double(e->at(612)) - base;
   const auto expected = [&](double nm) { return base + kLamp(nm) / 5 * line; };
   for (const double nm : {434.5, 435.0, 546.1, 612.3})
