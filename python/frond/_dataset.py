@@ -65,7 +65,7 @@ def _dimensions(columns, rows):
             continue
         grid = numpy.meshgrid(*(labels[name] for name in inner), indexing="ij")
         if all((numpy.tile(of_axis.ravel(), rows // size) == columns[name]).all() for name, of_axis in zip(inner, grid)):
-            outer = {} if first == 0 else {"row": numpy.arange(rows // size)}
+            outer = {} if first == 0 else {"row": numpy.arange(rows // size, dtype="int32")}
             return outer | {name: labels[name] for name in inner}
 
 
@@ -125,7 +125,7 @@ def _variables(columns, prefix=None):
         error = _error_of(name, columns)
         if name in errors or error:
             of = next((mean for mean in columns if _error_of(mean, columns) == name), None) if name in errors else name
-            own = f"{prefix}_{of}" if prefix and of != "share" else prefix if prefix and of == "share" else of
+            own = prefix if prefix and of == "share" else f"{prefix.removesuffix('_par')}_{of}" if prefix else of
             attributes = _attributes(own, name in errors)
             if name not in errors:
                 attributes["ancillary_variables"] = _name(own) + "_se"
@@ -182,7 +182,8 @@ def dataset(tables, attributes):
     command = attributes.get("command", "frond")
     described = {"Conventions": _CONVENTIONS, "title": " ".join(command.split()[:2]), "source": f"frond {attributes.get('version', '')}".strip(),
                  "history": command}
-    return xarray.Dataset(variables, coords=coordinates, attrs=described | attributes)
+    of = xarray.Dataset(variables, coords=coordinates, attrs=described | attributes)
+    return of.transpose(..., "time") if "time" in of.dims else of  # CF: further dimensions come before that of time
 
 
 def _same(a, b):
@@ -196,7 +197,9 @@ def write(of, path):
     for engine, package in (("netcdf4", "netCDF4"), ("h5netcdf", "h5netcdf"), ("scipy", "scipy")):
         if importlib.util.find_spec(package):
             # A coordinate without a fill value: CF allows no missing ones.
-            of.to_netcdf(path, engine=engine, encoding={str(name): {"_FillValue": None} for name, v in of.variables.items()
-                                                        if name in of.coords and v.dtype.kind == "f"})
+            encoding = {str(name): {"_FillValue": None} for name, v in of.variables.items() if name in of.coords and v.dtype.kind == "f"}
+            if "time" in of.coords:
+                encoding["time"] = {"units": "seconds since 1970-01-01", "dtype": "float64", "_FillValue": None}
+            of.to_netcdf(path, engine=engine, encoding=encoding)
             return
     raise ImportError("NetCDF files need the package netCDF4, h5netcdf or scipy: pip install netCDF4")

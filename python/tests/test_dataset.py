@@ -78,7 +78,7 @@ def test_times(scene, tmp_path):
     day = pandas.DataFrame({"time": ["2026-06-21T10:00+02:00", "2026-06-21T12:00+02:00"], "elevation": [30.0, 60.0]})
     day.to_csv(tmp_path / "day.csv", index=False)
     of = checked(frond.run("flux", scene=scene, wavelengths="550,800", paths=2000, times=tmp_path / "day.csv").to_xarray())
-    assert of.absorbed.dims == ("time", "material", "wavelength_nm")
+    assert of.absorbed.dims == ("material", "wavelength_nm", "time")
     assert str(of.time.values[0]).startswith("2026-06-21T08:00")
 
 
