@@ -113,4 +113,19 @@ inline bool is_valid_sample(const LightSample& sample) {
          is_unit(sample.wi);
 }
 
+/// Scatters light that meets a surface along `d`. Returns false if the surface has no BSDF there. Throws SurfaceError.
+inline bool scatter_light(const SurfacePoint& point, const SampledWavelengths& lambda, const Vec3& d,
+                          RandomStream& random, Arena& arena, Scattered& scattered) {
+  return name_material_in_errors(point, [&] {
+    const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, arena);
+    if (!bsdf) return false;
+    LocalBsdf local;
+    local.set(*bsdf, point.hit, -d);
+    local.scatter_light(random, scattered);
+    if (!is_valid_sample(scattered))
+      throw SurfaceError(point.material_id, "it scatters weights that are negative, infinite or not a number");
+    return true;
+  });
+}
+
 }  // namespace frond

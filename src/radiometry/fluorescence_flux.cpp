@@ -238,17 +238,7 @@ class FluorescenceFluxMeter::Block {
       if (!state_.scene().intersect(ray, at.key(Use::ray), point)) return at_end(ray.d.z > 0, light);
       arena.reset();
       Scattered scattered;
-      const bool scatters = name_material_in_errors(point, [&] {
-        const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, arena);
-        if (!bsdf) return false;
-        LocalBsdf local;
-        local.set(*bsdf, point.hit, -ray.d);
-        local.scatter_light(random, scattered);
-        if (!is_valid_sample(scattered))
-          throw SurfaceError(point.material_id, "it scatters weights that are negative, infinite or not a number");
-        return true;
-      });
-      if (!scatters) {
+      if (!scatter_light(point, lambda, ray.d, random, arena, scattered)) {
         set_leaving_ray(point.hit, ray.d, ray);
         continue;
       }
