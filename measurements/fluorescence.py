@@ -115,7 +115,7 @@ def chart(path, found, emission):
         column[0].set_title(title)
         column[1].set(xlabel="emission (nm)", ylim=(-45, 25))
         column[1].axhline(0, color="black", linewidth=0.8)
-    panels[0, 0].set_ylabel("10³ photons per nm")
+    panels[0, 0].set_ylabel("photons per nm (10⁻³)")
     panels[1, 0].set_ylabel("difference (%)")
     charts.legend(of, panels[0, 0], 4)
     charts.save(of, path)
