@@ -201,6 +201,26 @@ Shape "bilinearmesh" "point3 P" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]
     assert abs(share["sum"][0] - 1) < 5 * share["sum"][1] + 1e-9
 
 
+def test_fluorescence_of_a_scene(tmp_path):
+    """A leaf in the sun has the same photon radiance everywhere: pi times it leaves upward. Within 5 standard errors: a false alarm in 2e6."""
+    (tmp_path / "shares.csv").write_text("theta_deg,wavelength_nm,Rs,Rd,T\n8,400,0,0.1,0.1\n8,850,0,0.4,0.4\n")
+    (tmp_path / "matrices.csv").write_text("excitation_nm,emission_nm,Mb,Mf\n" + "".join(f"{e},{f},1e-5,2e-5\n" for e in (400, 750) for f in (640, 850)))
+    (tmp_path / "leaf.pbrt").write_text("""
+WorldBegin
+LightSource "sky" "float elevation" 60
+Material "leaf_lambert" "string tablefile" "shares.csv" "string fluorescencematrices" "matrices.csv"
+Shape "bilinearmesh" "point3 P" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]
+""")
+    brf = frond.brf(tmp_path / "leaf.pbrt", zenith=[0, 50], period=(2, 2), paths=4096, fluorescence=True, emission=[700, 740])
+    assert list(brf)[:5] == ["zenith_deg", "azimuth_deg", "wavelength_nm", "radiance", "radiance_se"]
+    assert numpy.allclose(brf["photon_radiance"], brf["photon_radiance"].mean(), rtol=0.02)
+    flux = frond.flux(tmp_path / "leaf.pbrt", period=(2, 2), paths=65536, fluorescence=True, emission=[700, 740])
+    upward = flux[(flux["quantity"] == "upward") & (flux["wavelength_nm"] == 740)].iloc[0]
+    seen = brf[brf["wavelength_nm"] == 740].iloc[0]
+    error = numpy.hypot(numpy.pi * seen["photon_radiance_se"], upward["photon_flux_se"])
+    assert abs(numpy.pi * seen["photon_radiance"] - upward["photon_flux"]) < 5 * error + 1e-3 * upward["photon_flux"]
+
+
 TURBID = """
 Option "float period" [ 1 1 ]
 WorldBegin

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "image/image_file.h"
 #include "tests/cli/table.h"
 #include "tests/support/command_test.h"
 
@@ -70,6 +71,38 @@ TEST_F(SceneFluorescenceJobs, FluxCountsPhotonsByLeaf) {
   const auto json = nlohmann::json::parse(bytes_of(path("f.json")));
   EXPECT_GT(json["incident_umol_m2_s"], 1000);
   EXPECT_EQ(json["fluorescence"][0]["quantity"], "excited");
+}
+
+/// Bands of fluorescence beside those of reflected light, from one run and from parts.
+TEST_F(SceneFluorescenceJobs, ImagesAndPartsHaveItsBands) {
+  setenv("SOURCE_DATE_EPOCH", "0", 1);
+  folder_.write("matrices.csv",
+                "excitation_nm,emission_nm,Mb,Mf\n400,640,1e-5,1e-5\n400,850,1e-5,1e-5\n750,640,1e-5,1e-5\n750,850,1e-5,1e-5\n");
+  folder_.write("shares.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,400,0,0.1,0.1\n8,850,0,0.4,0.4\n");
+  folder_.write("image.pbrt",
+                "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"orthographic\"\n"
+                "Film \"rgb\" \"integer xresolution\" 6 \"integer yresolution\" 4\nWorldBegin\n" +
+                    std::string(kSky) +
+                    "Material \"leaf_lambert\" \"string tablefile\" \"shares.csv\" \"string fluorescencematrices\" "
+                    "\"matrices.csv\"\nShape \"disk\" \"float radius\" 9\n");
+  const auto run = [&](const Words& more) {
+    const Outcome o = frond_command({"render", path("image.pbrt"), "--no-cache", "-q", "--wavelengths",
+                                     "bands,wavelengths=550,740,fluorescence=740,685"},
+                                    more);
+    EXPECT_EQ(o.code, 0) << o.err;
+  };
+  run({"--spp", "16", "-o", path("single.exr")});
+  run({"--samples", "0:5", "--part", path("a.part")});
+  run({"--samples", "5:16", "--part", path("b.part")});
+  const Outcome merged = frond_command({"merge", path("a.part"), path("b.part"), "-o", path("merged.exr"), "-q"});
+  ASSERT_EQ(merged.code, 0) << merged.err;
+  const ImageFile single = read_image(path("single.exr"), {}), whole = read_image(path("merged.exr"), {});
+  EXPECT_EQ(single.image.pixels, whole.image.pixels);
+  for (const char* name : {"S0.550,000000nm", "S0.740,000000nm", "S0.F740", "S0.F685"}) {
+    const auto channel = single.image.channel(name);
+    ASSERT_TRUE(channel) << name;
+    EXPECT_GT(single.image.pixels[*channel], 0) << name;
+  }
 }
 
 TEST_F(SceneFluorescenceJobs, SaysWhatIsMissing) {
