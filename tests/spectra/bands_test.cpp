@@ -321,7 +321,8 @@ TEST_F(Responses, TimesALightAreTheirProduct) {
 }
 
 TEST(BandPreview, BandsOfOneMeanShareItsWeight) {
-  const std::vector<Band> bands{{650}, {450}, {550, {}, "a"}, {600}, {550, {}, "b"}};
+  const std::vector<ResponsePoint> response{{549, 1}, {551, 1}};
+  const std::vector<Band> bands{{650}, {450}, {550, response, "a"}, {600}, {550, response, "b"}};
   const std::vector<Band> once{{450}, {550}, {600}, {650}};
   const auto shared = xyz_of_bands(bands), alone = xyz_of_bands(once);
   for (size_t c = 0; c < 3; ++c) {
@@ -342,6 +343,16 @@ TEST(BandPreview, IsTheColorOfTheSpectrumBetweenTheBands) {
       xyz[c] += weights[b][c] * double(unit_d65()->at(static_cast<float>(bands->bands()[b].nm)));
   const Triple exact = to_xyz(*unit_d65());  // D65 is linear between steps of 5 nm
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(xyz[c], exact[c], 1e-5);
+}
+
+/// A band of fluorescence adds no reflected light.
+TEST(BandPreview, LeavesFluorescenceOut) {
+  const auto both = make_bands({number("float", "lambdamin", {400}), number("float", "fluorescence", {685, 740})});
+  ASSERT_EQ(both->bands().size(), 33u);
+  const std::vector<Triple> weights = xyz_of_bands(both->bands());
+  ASSERT_EQ(weights.size(), 33u);
+  for (size_t c = 0; c < 3; ++c) EXPECT_EQ(weights[31][c] + weights[32][c], 0);
+  EXPECT_GT(weights[15][1], 0);
 }
 
 TEST(BandPreview, NeedsTheVisible) {
