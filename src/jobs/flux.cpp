@@ -396,8 +396,9 @@ Result measure_scene(const JobRun& run, const std::function<SceneDescription()>&
   last = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
   FluxMeter& meter = *last;
   const auto bands = meter.scene().wavelengths().bands();
-  if (!photons && !has_lamps(meter.scene().lights())) explain_no_photons(run, bands);
-  warn_of_sides(run, request, meter.scene());
+  const bool lamps = has_lamps(meter.scene().lights());
+  if (!photons && !lamps) explain_no_photons(run, bands);
+  if (!lamps) warn_of_sides(run, request, meter.scene());
   run.context.log().check();
   auto measured = measure(run, control, meter, photons, resume_file ? &*resume_file : nullptr);
   if (!measured) {

@@ -7,6 +7,7 @@
 #include "core/emission.h"
 #include "core/error.h"
 #include "core/fluorescence.h"
+#include "core/stop.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_label.h"
 #include "spectra/wavelengths/response_sampler.h"
@@ -61,15 +62,15 @@ LaneIrradiance irradiance(const Light& light, const SampledWavelengths& lambda) 
   return sum;
 }
 
-/// Returns the spectral power of a lamp in the scene at up to kLanes wavelengths.
-std::array<double, kLanes> power(const EmissionSampler& lamp, const SampledWavelengths& lambda) {
+/// Returns the spectral power of a lamp in the scene at up to kLanes wavelengths; all of it counts as diffuse.
+LaneIrradiance power(const EmissionSampler& lamp, const SampledWavelengths& lambda) {
   constexpr int kRays = 1 << 13;
-  std::array<double, kLanes> sum{};
+  LaneIrradiance sum;
   RandomStream random(1);
   for (int i = 0; i < kRays; ++i) {
     const Vec2 point{random.uniform(), random.uniform()};
     const auto ray = lamp.sample_emission(point, {(float(i) + 0.5f) / kRays, radical_inverse(uint32_t(i))}, lambda);
-    for (size_t lane = 0; ray && lane < kLanes; ++lane) sum[lane] += double(ray->power.v[lane]) / kRays;
+    for (size_t lane = 0; ray && lane < kLanes; ++lane) sum.all[lane] += double(ray->power.v[lane]) / kRays;
   }
   return sum;
 }
@@ -79,13 +80,14 @@ struct ListedIrradiance {
   std::vector<double> all, direct;
 };
 
-ListedIrradiance irradiance(const Light& light, std::span<const double> nm, const ThreadPool& pool) {
+/// `light` may be a lamp in the scene: its spectral power takes the place of the irradiance.
+ListedIrradiance irradiance(const Light& light, std::span<const double> nm, const ThreadPool& pool = ThreadPool(1)) {
   ListedIrradiance values{std::vector<double>(nm.size()), std::vector<double>(nm.size())};
-  const auto* lamp = light.is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(&light);
   pool.for_each(int64_t((nm.size() + kLanes - 1) / kLanes), [&](int64_t group, int) {
     const size_t begin = size_t(group) * kLanes;
     const SampledWavelengths lambda = lanes_at(nm.subspan(begin));
-    const LaneIrradiance four = lamp ? LaneIrradiance{power(*lamp, lambda), {}} : irradiance(light, lambda);
+    const auto* lamp = light.is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(&light);
+    const LaneIrradiance four = lamp ? power(*lamp, lambda) : irradiance(light, lambda);
     std::copy_n(four.all.begin(), lambda.count, values.all.begin() + int64_t(begin));
     std::copy_n(four.direct.begin(), lambda.count, values.direct.begin() + int64_t(begin));
   });
@@ -105,14 +107,14 @@ std::vector<double> points_nm(std::span<const Light* const> lights, Interval ran
 /// the directions of a sky.
 ListedIrradiance irradiance_by_ratio(const Light& light, const std::vector<double>& nm) {
   constexpr double kStep_nm = 10;
-  if (light.is_delta()) return irradiance(light, nm, ThreadPool(1));
+  if (light.is_delta()) return irradiance(light, nm);
   std::vector<double> few{nm.front(), nm.back()};
   append_points_nm(light.emission(), few);
   for (double at = std::ceil(nm.front() / kStep_nm) * kStep_nm; at < nm.back(); at += kStep_nm) few.push_back(at);
   std::erase_if(few, [&nm](double at) { return at < nm.front() || at > nm.back(); });
   std::ranges::sort(few);
   few.erase(std::ranges::unique(few).begin(), few.end());
-  const ListedIrradiance known = irradiance(light, few, ThreadPool(1));
+  const ListedIrradiance known = irradiance(light, few);
   const auto emitted = [&light](double at) { return double(light.emission().at(float(at))); };
   ListedIrradiance values;
   size_t above = 1;
@@ -157,6 +159,11 @@ void check_lights(const Scene& scene, bool may_be_lamps) {
 
 }  // namespace
 
+bool has_lamps(std::span<const Light* const> lights) {
+  return std::ranges::any_of(
+      lights, [](const Light* light) { return !light->is_distant() && dynamic_cast<const EmissionSampler*>(light); });
+}
+
 bool is_direct(const Light& light, const Vec3& toward) {
   if (light.is_delta()) return true;
   const auto sun = light.sun();
@@ -165,11 +172,6 @@ bool is_direct(const Light& light, const Vec3& toward) {
   constexpr double kRadian = std::numbers::pi / 180;
   const double chord = 2 * std::sin(kSunAngle_deg * kRadian / 2);
   return double(dot(apart, apart)) < chord * chord;
-}
-
-bool has_lamps(std::span<const Light* const> lights) {
-  return std::ranges::any_of(
-      lights, [](const Light* light) { return !light->is_distant() && dynamic_cast<const EmissionSampler*>(light); });
 }
 
 HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm,
@@ -193,7 +195,7 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std:
   std::vector<double> direct(nm_.size());
   std::vector<std::vector<double>> each;
   for (const Light* light : lights) {
-    ListedIrradiance of_light = range_nm ? irradiance_by_ratio(*light, nm_) : irradiance(*light, nm_, ThreadPool(1));
+    ListedIrradiance of_light = range_nm ? irradiance_by_ratio(*light, nm_) : irradiance(*light, nm_);
     for (size_t i = 0; i < nm_.size(); ++i) values_[i] += of_light.all[i], direct[i] += of_light.direct[i];
     each.push_back(std::move(of_light.all));
   }

@@ -70,7 +70,7 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
   std::optional<Sample> s;
   if (const auto* lamp = lights_[i]->is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(lights_[i])) {
     const auto ray = lamp->sample_emission({random.uniform(), random.uniform()}, u, lambda);
-    if (ray) s = Sample{ray->direction, ray->power, ray->origin};
+    if (ray) s = Sample{ray->direction, ray->power, false, ray->origin};
   } else {
     s = sample_light(*lights_[i], cosine_sampled_[i], u, lambda);
   }
@@ -79,7 +79,7 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
   const SampledSpectrum irradiance = irradiance_.at(lambda);
   for (int lane = 0; lane < lambda.count; ++lane)
     if (irradiance[lane] > 0) weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
-  return Sample{s->direction, weight, frond::is_direct(*lights_[i], -s->direction), s->origin};
+  return Sample{s->direction, weight, !s->origin && frond::is_direct(*lights_[i], -s->direction), s->origin};
 }
 
 EntryBox::Point EntryBox::sample(const Vec3d& d, Vec2 u, RandomStream& random) const {

@@ -16,9 +16,9 @@ class IncidentLight {
   IncidentLight(const Scene& scene, HorizontalIrradiance irradiance, const SampledWavelengths& lambda);
 
   struct Sample {
-    Vec3 direction;                   ///< direction of propagation, downward
+    Vec3 direction;                   ///< direction of propagation, downward unless it is that of a lamp
     SampledSpectrum weight;           ///< mean 1
-    bool is_direct = false;           ///< as frond::is_direct
+    bool is_direct = false;           ///< as frond::is_direct; light of lamps is not
     std::optional<Vec3> origin = {};  ///< of light of a lamp in the scene
   };
   /// Returns a direction of one of the lights; nullopt if the sample fails.

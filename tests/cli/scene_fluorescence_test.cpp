@@ -76,8 +76,9 @@ TEST_F(SceneFluorescenceJobs, FluxCountsPhotonsByLeaf) {
 /// Bands of fluorescence beside those of reflected light, from one run and from parts.
 TEST_F(SceneFluorescenceJobs, ImagesAndPartsHaveItsBands) {
   setenv("SOURCE_DATE_EPOCH", "0", 1);
-  folder_.write("matrices.csv",
-                "excitation_nm,emission_nm,Mb,Mf\n400,640,1e-5,1e-5\n400,850,1e-5,1e-5\n750,640,1e-5,1e-5\n750,850,1e-5,1e-5\n");
+  folder_.write(
+      "matrices.csv",
+      "excitation_nm,emission_nm,Mb,Mf\n400,640,1e-5,1e-5\n400,850,1e-5,1e-5\n750,640,1e-5,1e-5\n750,850,1e-5,1e-5\n");
   folder_.write("shares.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,400,0,0.1,0.1\n8,850,0,0.4,0.4\n");
   folder_.write("image.pbrt",
                 "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"orthographic\"\n"
