@@ -84,7 +84,7 @@ struct FluorescenceFluxMeter::State {
   std::vector<Moment> moments = {};    ///< by quantity and wavelength of emission
   std::vector<RatioSums> escape = {};  ///< by wavelength of emission
   std::vector<uint64_t> seen = {};     ///< number of paths, by wavelength of emission
-  std::unique_ptr<InstanceSums> by_instance = {};
+  std::unique_ptr<OrganSums> by_instance = {};
   uint64_t paths = 0;
 
   size_t quantities() const { return kAbsorbedBy + materials; }
@@ -314,10 +314,10 @@ FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription 
   const uint64_t instances = state_->scene().geometry().instances();
   const size_t cells = 1 + kQuantitiesOfInstance * state_->emissions;
   if (instances == 0) fail({}, "this scene has no instances of objects (ObjectInstance, Shape \"instances\")");
-  if (const double bytes = double(instances) * double(cells) * InstanceSums::kCellBytes; bytes > machine_memory())
+  if (const double bytes = double(instances) * double(cells) * OrganSums::kCellBytes; bytes > machine_memory())
     fail({}, "{} instances and {} wavelengths need {:.1f} GB of memory: use fewer wavelengths", instances,
          state_->emissions, bytes * 1e-9);
-  state_->by_instance = std::make_unique<InstanceSums>(instances, cells);
+  state_->by_instance = std::make_unique<OrganSums>(instances, cells);
 }
 
 FluorescenceFluxMeter::~FluorescenceFluxMeter() = default;
