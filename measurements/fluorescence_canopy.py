@@ -240,7 +240,8 @@ parameter 0.05; its sun, an isotropic sky, its soil, its leaf of 40 µg/cm² of 
 fluorescence in mW m⁻² sr⁻¹ nm⁻¹; each with the difference from SCOPE:
 
 {table(["view", "", "reflectance factor", "", "fluorescence", ""], rows)}
-Escape upward: {', '.join(f"{escape(t['flux'], nm)} at {nm} nm" for nm in EMITTED_NM)}; SCOPE has 0.30 at 685 nm and 0.47 at 740 nm.
+Escape upward: {', '.join(f"{escape(t['flux'], nm)} at {nm} nm" for nm in EMITTED_NM)}; SCOPE, whose
+diffuse light inside the canopy has two streams, has 0.30 at 685 nm and 0.47 at 740 nm.
 
 **What the leaf's own matrices and directions change.** The turbid canopy with a solved leaf (`leaf_solved`) that has the R + T and the emission shape of the
 plates, as [above](#comparison-with-plates): first only its matrices on a Lambertian leaf with its R and T, then the leaf itself. Differences in %

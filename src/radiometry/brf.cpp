@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/fluorescence.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
 #include "scene/format/plugin_text.h"
@@ -64,7 +65,10 @@ bool has_heavy_tails(const Scene& scene, size_t materials) {
 
 double BrfMeasurement::relative_error() const {
   double sum = 0;
-  for (const MeanError& v : values) sum += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
+  // At the ends of its wavelengths fluorescence is exactly 0.
+  const bool may_be_dark = std::ranges::any_of(bands, is_of_fluorescence);
+  for (const MeanError& v : values)
+    if (v.mean > 0 || !may_be_dark) sum += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
   return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
 }
 

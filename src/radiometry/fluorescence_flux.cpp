@@ -286,6 +286,7 @@ class FluorescenceFluxMeter::Block {
 FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription description,
                                              const FluorescenceFluxRequest& request, const Scene* other) {
   if (description.has_media()) fail(description.media.front().plugin.where, "flux does not trace participating media");
+  description.integrator = {"path", {}, {}};  // has no effect here, and others refuse fluorescence
   prepare_for_radiometry(session.registry(), fmt::format("bands,fluorescence={}", fmt::join(request.emission_nm, ",")),
                          request.period, false, description, true);
   LoadedScene loaded =
@@ -419,7 +420,7 @@ FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {
 
 double FluorescenceFluxMeasurement::relative_error() const {
   double squares = 0;
-  for (const MeanError& v : upward) squares += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
+  for (const MeanError& v : upward) squares += v.mean > 0 ? std::pow(v.standard_error / v.mean, 2) : 0;
   return std::sqrt(squares / double(upward.size()));
 }
 

@@ -106,6 +106,17 @@ TEST_F(SceneFluorescenceJobs, ImagesAndPartsHaveItsBands) {
   }
 }
 
+/// No emission at 640 nm: its error does not count.
+TEST_F(SceneFluorescenceJobs, RefinesAlsoWhereNothingIsEmitted) {
+  const Outcome o = measured(
+      kSky, {"brf", "--zenith", "0", "--emission", "640,740", "--rms", "0.02", "--csv", "-", "--plot", path("f.svg")});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const CsvTable csv = parse_csv(o.out);
+  EXPECT_EQ(csv.rows.size(), 2u);
+  EXPECT_LT(csv.number(1, "radiance_se"), 0.025 * csv.number(1, "radiance"));
+  EXPECT_THAT(bytes_of(path("f.svg")), HasSubstr("radiance"));
+}
+
 TEST_F(SceneFluorescenceJobs, SaysWhatIsMissing) {
   EXPECT_THAT(measured(kSky, {"flux", "--emission", "600"}).err, HasSubstr("from 640 to 850"));
   EXPECT_THAT(measured(kSky, {"brf", "--wavelengths", "740"}).err, HasSubstr("--wavelengths"));
