@@ -77,7 +77,7 @@ constexpr JobParam kParams[] = {
              {.type = "SPECTRUM", .unit = "W/(m2 nm)", .decides = true}),
     scene_fluorescence_param(
         "Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward.",
-        "wavelengths,rms,instance-error,irradiance,checkpoint,resume"),
+        "wavelengths,bands,sides,rms,instance-error,irradiance,checkpoint,resume"),
     kSceneEmissionParam,
     JobParam(
         "times", text,

@@ -193,6 +193,8 @@ Result fluorescence_brf_result(const JobRun& run, const BrfMeter& meter, const B
 // Checkpoints are refused by the record: the sums of instances would have to be kept.
 Result fluorescence_flux_result(const JobRun& run) {
   const bool is_by_instance = run.args.text("by") == "instance";
+  if (run.args.given("by") && !is_by_instance)
+    fail({}, "{} measures instances alone: {} instance", run.args.spelled("fluorescence"), run.args.spelled("by"));
   if (!is_by_instance) warn_if_nothing_is_kept(run);
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   const FluorescenceFluxRequest request{.target = target_of(run.args),
