@@ -123,7 +123,7 @@ def table(leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, s
     equalsides: Write the mean of both sides, at angles up to 90 degrees.
     output: File to write; - is standard output. FILE.leaf, of a mode table: for other programs (docs/file_formats.md)."""
 
-def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
     Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal, or incident=light if their model is a random walk.
@@ -150,13 +150,14 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
     plot: Chart against the zenith angle, or maps of a hemisphere: .svg or .png.
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv.
 
     Returns the job's table."""
 
-def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, times: str | os.PathLike | None = None, bands: str | os.PathLike | None = None, optics_range: float | Sequence[float] | str | None = None, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, sides: bool = False, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, ply: str | os.PathLike | None = None, provenance: bool = False, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
@@ -164,37 +165,52 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
 
     With by="instance" also the table of the instances, one row each: "instance", "area", for PAR "par_umol_m2_s" (absorbed photons
     by leaf area), and for each wavelength or band "absorbed_550", "absorbed_nir", ... (shares of the incident light), each with a
-    column "_se" (standard error).
+    column "_se" (standard error). With by="mesh", "part", "triangle" or "material" its rows are these.
 
     With fluorescence=True the first table is the balance of photons, and of the instances "excited_umol_m2_s", "emitted_740" and
     "left_740" (nmol/(m2 s nm) by leaf area).
 
+    With bands="par,nir,shortwave" a dictionary of tables: "energy", one row for each quantity and band, with W/m2 and umol/(m2 s);
+    "leaves", sunlit and shaded leaf area with its light, if the scene has leaves; with by also "instances", "meshes", "parts",
+    "triangles" or "materials".
+
+    times: a table of times as a file, a data frame with a column or an index of times, or a dictionary of columns. The tables then
+    have a column "time", and their rows of PAR "par_umol_m2_s"; the sums of each day are a table of
+    run("flux", ...).tables["flux_days"].
+
     Measure the light budget of a scene: reflection, transmission, absorption.
 
-    Reports shares of the incident light by wavelength: reflected, transmitted, and absorbed by each material. With wavelengths from 400 to 700 nm, also shares of the photons (PAR). The share of a band with a response is that of the light under it: the mean weighted by response times irradiance.
+    Reports shares of the incident light by wavelength: reflected, transmitted, and absorbed by each material; with --bands also W/m2 and µmol/(m2 s). With wavelengths from 400 to 700 nm, also shares of the photons (PAR). The share of a band with a response is that of the light under it: the mean weighted by response times irradiance.
 
     scene: Scene file (pbrt-v4 format).
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
+    bands: Measure energy and photons of these bands, direct and diffuse light apart, and sunlit and shaded leaves: par (400 to 700 nm), nir (700 to 1100 nm), shortwave (300 to 2500 nm), all: these three, or NAME=FIRST:LAST in nm. Excludes wavelengths.
+    optics_range: Wavelengths for which the optics of all surfaces are known: light beyond them meets the optics at the ends. By default 360 to 2500 nm if the scene has leaf models, else all wavelengths of the bands. Unit: nm. Needs bands.
+    material: Material whose surfaces count as leaves, by its name in the scene; by default all leaf models. Needs bands. Repeatable.
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
+    sides: Light also enters through the sides of the box between the target and the bottom of the scene: for plants that stand alone. Shares remain relative to the light through the target, and may exceed 1.
     paths: Number of light paths; at least 32 for each wavelength are traced. Default: 1e6.
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0, up to 1.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
-    by: Measure the absorption of each instance of an object, one row each; the table of shares is then in a file beside that of csv: leaves-flux.csv beside leaves.csv. One of instance.
-    instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0, up to 1. Needs by.
+    by: Measure the absorption of each instance of an object, mesh, connected part of a mesh, triangle or material, one row each; the other tables are then in files beside that of csv: leaves-flux.csv beside leaves.csv. One of instance, mesh, part, triangle, material.
+    instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances, or other rows of by, is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0, up to 1. Needs by.
     irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global. Unit: W/(m2 nm).
-    fluorescence: Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward. Excludes wavelengths, rms, instance_error, irradiance, checkpoint, resume.
+    fluorescence: Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward. Excludes wavelengths, bands, sides, rms, instance_error, irradiance, checkpoint, resume.
     emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
+    times: Table of times (CSV): measure the scene under the light of each, with one load of the scene. Columns: time (2026-06-21T11:00+02:00); latitude and longitude, or sun_zenith and sun_azimuth from north to east; ghi, dhi, dni (W/m2); any parameter of LightSource "sky", or of the scene's only LightSource. Excludes checkpoint, resume, ply, fluorescence.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
+    ply: PLY file to write: meshes whose faces have the light that each row of by absorbs for each unit of its area, as properties, and as colours in the first band. Needs bands.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv."""
 
-def structure(scene: str | os.PathLike | Scene, zenith: float | Sequence[float] | str = '0:80:10', azimuth: float | Sequence[float] | str | None = None, *, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, sun: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, rays: int = 100000, rms: float | None = None, time_limit: float | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def structure(scene: str | os.PathLike | Scene, zenith: float | Sequence[float] | str = '0:80:10', azimuth: float | Sequence[float] | str | None = None, *, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, sun: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, rays: int = 100000, rms: float | None = None, time_limit: float | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Measure the structure of a canopy: leaf area, gap fraction, clumping, sunlit leaves.
 
     Rays through the target measure the gap fraction: the share of them that meet no leaf; other surfaces do not stop them. Points of the leaves measure the leaf area index, the leaf angles, their mean projection G, and the share of the leaf area that the sun reaches. The clumping index is -ln(gap fraction) cos(zenith) / (G LAI).
@@ -214,9 +230,10 @@ def structure(scene: str | os.PathLike | Scene, zenith: float | Sequence[float] 
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
     plot: Chart against the zenith angle: .svg or .png."""
 
-def spectrophotometer(material, wavelengths: float | Sequence[float] | str | None = None, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, fluorescence: bool = False, excitation: float | Sequence[float] | str = '400:750:10', emission: float | Sequence[float] | str = '640:850:10', seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
+def spectrophotometer(material, wavelengths: float | Sequence[float] | str | None = None, angles = 8, *, with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int | None = None, se: float | None = None, rendered: bool = False, fluorescence: bool = False, excitation: float | Sequence[float] | str = '400:750:10', emission: float | Sequence[float] | str = '640:850:10', seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of measurements. With fluorescence=True it is the excitation-emission matrix, without wavelengths.
 
     Measure a material's reflectance, transmittance and absorptance.
@@ -235,9 +252,10 @@ def spectrophotometer(material, wavelengths: float | Sequence[float] | str | Non
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
     plot: Chart of R and T against wavelength or angle, or maps of fluorescence over excitation and emission: .svg or .png."""
 
-def goniophotometer(material, wavelengths: float | Sequence[float] | str | None = None, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, fluorescence: bool = False, excitation: float | Sequence[float] | str = '440', emission: float | Sequence[float] | str = '685,740', seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
+def goniophotometer(material, wavelengths: float | Sequence[float] | str | None = None, angles = 8, *, patches = (20, 40), with_: str | os.PathLike | Sequence[str | os.PathLike] | None = None, illuminant: str | os.PathLike = 'stdillum-E', rays: int = 1000000, integrate: bool = False, rendered: bool = False, fluorescence: bool = False, excitation: float | Sequence[float] | str = '440', emission: float | Sequence[float] | str = '685,740', seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, map: str | os.PathLike | None = None, map_scale: str | os.PathLike = 'linear', progress = None, session: Session | None | None = None) -> object:
     """With fluorescence=True returns the table of fluorescence by direction, without wavelengths.
 
     Otherwise returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
@@ -262,6 +280,7 @@ def goniophotometer(material, wavelengths: float | Sequence[float] | str | None 
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
     plot: Chart of f in the plane of incidence: .svg or .png.
     map: Polar maps of f over both hemispheres: .svg or .png.
     map_scale: Colour scale of the map. One of linear, log. Default: linear."""
@@ -347,7 +366,7 @@ def check(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Seque
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors."""
 
-def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, objects: bool = False, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Write a plant model of another program, OBJ or glTF, as a scene, or list what it contains.
 
     The model is read in a process of its own; files that it names are read in its folder and below only. Names of materials, their colours, opacity and normal maps, and instances are kept.
@@ -358,6 +377,7 @@ def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, l
     unit: Length unit of the model, which is converted to metres; by default m, glTF's unit. One of m, cm, mm, inch. Excludes scale.
     scale: Metres for one unit of the model. Range: from 1e-12 to 1e+12.
     up: Axis that is up in the model; z is up in the scene. By default y, glTF's axis. One of y, z.
+    objects: Keep each object of the model as an object of the scene with its name, which frond flux by instance measures. By default the meshes of a material are joined.
     single_sided: Material, by name with * and ?, whose leaves are two sheets, front and back: remove the second sheet. Repeatable.
     strict: Treat warnings as errors."""
 
