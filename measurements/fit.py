@@ -1,5 +1,6 @@
 """Fits of measured leaves by frond fit and by PROSPECT-D (sections "fit" of docs/fit.md, "seasons" of docs/outdoors.md)
 
+Leaves by PROSPECT's parameters are the section "prospect" of docs/leaf_models.md.
 Also fits six bands, and a thousand leaves, and writes a chart of each leaf into docs/images/fit. Installs PROSPECT-D (prosail)
 into build/fit by pip, and runs by that Python.
   --quick   one leaf, into build/fit_report
@@ -275,8 +276,9 @@ def plates(count):
         *first, anthocyanins = numbers
         nm, r, t = (v[::10] for v in prosail.run_prospect(*first, ant=anthocyanins, prospect_version="D"))
         words = ",".join(f"{name}={value!r}" for name, value in zip(PLATE_NAMES, numbers.tolist()))
-        found = frond.spectrophotometer(f"leaf_lambert,{words}", nm)
-        off.append(max(abs(found.R.to_numpy() - r).max(), abs(found["T"].to_numpy() - t).max()))
+        leaf = frond.bsdf(f"leaf_lambert,{words}", nm)
+        shares = numpy.pi * leaf.f([[0, 0, 1], [0, 0, 1]], [[0, 0.6, 0.8], [0, 0.6, -0.8]])
+        off.append(max(abs(shares[0] - r).max(), abs(shares[1] - t).max()))
         walk = frond.fit(nm, R=r, T=t).spectra
         walks.append(numpy.abs(numpy.concatenate([walk.R_fitted - walk.R, walk.T_fitted - walk["T"]])))
     rmse, largest = [rms(w) for w in walks], [w.max() for w in walks]

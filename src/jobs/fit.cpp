@@ -252,7 +252,7 @@ void warn_of_changes(const JobRun& run, const leaf::MeasuredSpectra& measured, c
   if (measured.derived)
     run.log().info(fmt::format("{}{} = 1 - {} - A: it follows from the column of absorptances", of, measured.derived,
                                measured.derived == 'T' ? 'R' : 'T'));
-  if (!measured.layout.empty()) run.log().info(fmt::format("{}{}", of, measured.layout));
+  if (!measured.layout.empty()) run.log().info(fmt::format("{}read as {}", of, measured.layout));
   if (!measured.unused.empty())
     run.log().info(fmt::format("{}columns that are not used: {}", of, fmt::join(measured.unused, ", ")));
   if (!measured.in_percent.empty())

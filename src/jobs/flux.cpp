@@ -418,6 +418,7 @@ Result measure_scene(const JobRun& run, const std::function<SceneDescription()>&
   result.facts.insert(
       result.facts.begin(),
       {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}});
+  // Under sun and sky --csv writes the files of the first version, without the surfaces; --json has them.
   size_t beside_csv = 0;
   if (Table surfaces = surface_table(measurement, photons); !request.energy && !surfaces.columns.empty()) {
     if (measurement.has_lamps) result.text += '\n' + to_text(surfaces);
@@ -455,6 +456,7 @@ Result flux(const JobRun& run) {
   if (run.args.flag("fluorescence")) return fluorescence_flux_result(run);
   if (!run.args.given("by")) warn_if_nothing_is_kept(run);
   const std::list<PlannedOutput> planned = planned_tables(run.args);
+  // Shares its geometry with the scene of the next time.
   std::unique_ptr<FluxMeter> last;
   if (!run.args.given("times"))
     return measure_scene(

@@ -287,9 +287,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   if (lamps && (request.target || request.sides))
     fail({}, "a target is the rectangle through which light from outside enters: lamps in the scene need none");
   if (lamps && request.energy)
-    fail({},
-         "bands in W/m2 are those of light from outside: under lamps single wavelengths from 400 to 700 nm give the "
-         "photons on each surface");
+    fail({}, "bands in W/m2 are of light from outside: under lamps single wavelengths give the photons on surfaces");
   // The power of lamps is not that of an area.
   const Target target = request.target ? *request.target
                         : lamps        ? Target{0, 1, 0, 1, 0}

@@ -24,4 +24,10 @@ std::vector<std::shared_ptr<const Fluorescence>> fluorescence_by_material(std::s
   return by_material;
 }
 
+FluorescenceIntegrator& fluorescence_integrator(Integrator& integrator, const ParsedPlugin& plugin) {
+  auto* found = dynamic_cast<FluorescenceIntegrator*>(&integrator);
+  if (!found) fail(plugin.where, "integrator \"{}\" computes no fluorescence: \"path\" does", plugin.name);
+  return *found;
+}
+
 }  // namespace frond

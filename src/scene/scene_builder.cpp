@@ -166,16 +166,13 @@ class SceneBuilder {
 
   /// Passes the fluorescence of the materials to the integrator. Throws InputError if it computes none.
   void set_fluorescence(const Preparation& preparation) {
-    auto* integrator = dynamic_cast<FluorescenceIntegrator*>(scene_.integrator_.get());
-    if (!integrator)
-      fail(description_.integrator.where, "integrator \"{}\" computes no fluorescence: \"path\" does",
-           description_.integrator.name);
+    FluorescenceIntegrator& integrator = fluorescence_integrator(*scene_.integrator_, description_.integrator);
     for (size_t i = 0; i < scene_.is_leaf_.size(); ++i)
       if (const ParsedPlugin& plugin = description_.materials[i].plugin;
           scene_.is_leaf_[i] && scene_.material_at_[i] &&
           is_mixture(registry_.materials.get(plugin.name, plugin.where)))
         log_.warn(plugin.where, "the leaves of a mixture do not fluoresce");
-    integrator->set_fluorescence(fluorescence_by_material(scene_.material_at_, preparation));
+    integrator.set_fluorescence(fluorescence_by_material(scene_.material_at_, preparation));
   }
 
   template <class Info, class... Args>

@@ -117,13 +117,21 @@ class Reader {
 
   void add_layout(const std::string& text) { layout_ += (layout_.empty() ? "" : "; ") + text; }
 
+  /// Whether libraries name the spectra in a column of this name: "Sample_ID", "spectrum", "leaf id".
+  static bool names_leaves(std::string_view name) {
+    const std::string word = lower_case(name);
+    const auto has = [&word](std::string_view part) { return word.find(part) != word.npos; };
+    return has("sample") || has("leaf") || has("spectr") || word == "id";
+  }
+
   /// A spectrum in each row, in columns that are named by wavelengths.
   void begin_rows() {
     WavelengthNames named = wavelength_names(table_.names());
     if (named.columns.empty()) return;
     std::optional<size_t> label;
+    for (size_t i = 0; i < columns_.size(); ++i)
+      if (!label && (columns_[i] == kLeaf || names_leaves(table_.names()[i].text))) label = i;
     for (size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i] == kLeaf && !label) label = i;
       const bool is_value = std::ranges::find(named.columns, i) != named.columns.end();
       if (!is_value && label != i && !table_.names()[i].text.empty()) unused_.emplace_back(table_.names()[i].text);
     }
@@ -146,6 +154,8 @@ class Reader {
     }
     if (values.empty() || has(kTheta) || has(kSide) || has(kLeaf)) return;
     if (values.size() == 1) {
+      // A name of a file, as ASD's, says as little as none; another name says that this is something else.
+      if (text_.layout.empty() && names[0].find('.') == std::string::npos) return;
       columns_[values[0]] = kR;
       add_layout(fmt::format("\"{}\" is taken as R", names[0]));
       return;
