@@ -180,7 +180,7 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
 
     Measure the light budget of a scene: reflection, transmission, absorption.
 
-    Reports shares of the incident light by wavelength: reflected, transmitted, and absorbed by each material; with --bands also W/m2 and µmol/(m2 s). With wavelengths from 400 to 700 nm, also shares of the photons (PAR). The share of a band with a response is that of the light under it: the mean weighted by response times irradiance.
+    Reports shares of the incident light by wavelength: reflected, transmitted, and absorbed by each material; with --bands also W/m2 and umol/(m2 s). With wavelengths from 400 to 700 nm, also shares of the photons (PAR). The share of a band with a response is that of the light under it: the mean weighted by response times irradiance.
 
     scene: Scene file (pbrt-v4 format).
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.

@@ -473,7 +473,7 @@ Result flux(const JobRun& run) {
 extern const JobInfo kFluxJob("flux", "Measure",
                               "Measure the light budget of a scene: reflection, transmission, absorption.",
                               "Reports shares of the incident light by wavelength: reflected, transmitted, and "
-                              "absorbed by each material; with --bands also W/m2 and µmol/(m2 s). With wavelengths "
+                              "absorbed by each material; with --bands also W/m2 and umol/(m2 s). With wavelengths "
                               "from 400 to 700 nm, also shares "
                               "of the photons (PAR). The share of a band with a response is that of the light under "
                               "it: the mean weighted by response times irradiance.",
