@@ -37,7 +37,7 @@ struct ResponsePoint {
 struct Band {
   double nm;                                 ///< wavelength, or centroid of the response
   std::vector<ResponsePoint> response = {};  ///< linear between the points, 0 beyond; empty: the single wavelength
-  std::string name = {};                     ///< of a band with a response, unique in its strategy; else empty
+  std::string name = {};                     ///< of a band with a response or of fluorescence, unique; else empty
 };
 
 /// Wavelength strategy: samples the wavelengths of a path and converts its radiance to values of film channels.
