@@ -5,6 +5,7 @@
 
 #include "core/messages/counted.h"
 #include "jobs/record/common_params.h"
+#include "leaf/plates/plate_leaf.h"
 #include "leaf/table/mode_lookup.h"
 #include "leaf/table/mode_table_cache.h"
 #include "leaf/table/mode_table_file.h"
@@ -118,6 +119,10 @@ TableLeaf leaf_of(const JobRun& run) {
   std::map<std::string, std::string> given;
   for (const auto& [name, value] : leaf.params) {
     check_is_of_leaf(name, run.args);
+    // Its own R and T differ from those of the walk that this job would solve.
+    if (model->leaf->table == LeafModel::Table::shares && leaf::find_plate_number(name))
+      fail({}, "\"{}\" needs no table: {} computes the reflectance and transmittance of PROSPECT itself", name,
+           model->name);
     if ((name == "fluorescence" || name == "fluorescencematrices") && value != "0")
       run.log().warn({}, fmt::format("\"{}\" is left out: a table holds no fluorescence; frond spectrophotometer "
                                      "--fluorescence writes matrices, which every leaf takes by fluorescencematrices",

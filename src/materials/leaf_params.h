@@ -69,7 +69,7 @@ class LeafParams {
     return cuticle_aspect() ? cuticle_aspect()->range() : Interval{constant, constant};
   }
   /// Name of the specimen, for the log.
-  std::string specimen() const { return specimen_; }
+  std::string specimen() const { return plates_ ? "PROSPECT" : specimen_; }
 
   /// Distribution of the wavelengths of fluorescence.
   const leaf::EmissionShape& emission() const { return emission_; }

@@ -45,6 +45,14 @@ TEST(TableCommand, WritesToStandardOutput) {
   EXPECT_THAT(o.out, HasSubstr("# rays 100, seed 7"));
 }
 
+// A Lambertian leaf has PROSPECT's R and T, and not those of the walk that a table would hold.
+TEST(TableCommand, RefusesTheSharesOfALeafOfProspect) {
+  const Outcome o =
+      table_command({"leaf_lambert,N=1.5,Cab=40,Car=8,Cw=0.01,Cm=0.009", "--wavelengths", "551", "-q", "-o", "-"});
+  EXPECT_NE(o.code, 0);
+  EXPECT_THAT(o.err, HasSubstr("leaf_lambert computes the reflectance and transmittance of PROSPECT itself"));
+}
+
 TEST(TableCommand, FoldsBothSidesIntoOne) {
   const auto table_of = [](const Words& more) {
     const Words all = joined({"--wavelengths", "800", "-q", "-o", "-", "--angles"}, more);
