@@ -12,7 +12,7 @@ import numpy
 import pandas
 
 from .shared import charts
-from .shared.tools import arguments, machine, program, program_csv, table, write_section
+from .shared.tools import FROND, Use, arguments, machine, program, program_csv, rms, table, write_section
 
 LEAVES = {"shared_cab20": "20 µg/cm² of chlorophyll", "shared_cab40": "40 µg/cm²", "shared_cab80": "80 µg/cm²"}
 YIELD = 0.01  # of the reference
@@ -121,8 +121,65 @@ def chart(path, found, emission):
     charts.save(of, path)
 
 
+def cost(folder, quick):
+    """CPU time (s) and error (%) of the matrices of a leaf: of walks by their number, of tables by their step, and the time of the
+    solution, to which the errors refer."""
+    nm = {"excitation": range(405, 750, 40), "emission": range(645, 850, 20)}  # between the nodes of the tables
+
+    def measured(material, at, *more):
+        csv = folder / "cost.csv"
+        use = Use(FROND, "spectrophotometer", material, "--fluorescence", *(w for k, v in at.items() for w in (f"--{k}", listed(v))),
+                  "--threads", 1, "--no-cache", "-q", "--csv", csv, *more)
+        return use.cpu, read(csv)[list(SIDES)].to_numpy()
+
+    seconds, exact = measured("leaf_solved,fluorescence=0.01", nm)
+    rows = {"walk": [], "table": [], "solution": seconds}
+    for rays in (100, 1000) if quick else (100, 1000, 10000, 100000):
+        time, found = measured("abm,fluorescence=0.01", nm, "--rays", rays)
+        rows["walk"].append((rays, time, 100 * rms((found - exact).ravel()) / exact.mean()))
+    for step in (50, 30, 10):
+        measured("leaf_solved,fluorescence=0.01", {"excitation": range(400, 751, step), "emission": range(640, 851, step)})
+        table_file = (folder / "cost.csv").rename(folder / f"every{step}.csv")
+        time, found = measured(f"leaf_lambert,fluorescencematrices={table_file}", nm)
+        rows["table"].append((step, time, 100 * rms((found - exact).ravel()) / exact.mean()))
+    return rows
+
+
+def cost_chart(path, rows):
+    of, panels = charts.figure(760, 420)
+    panel = panels[0, 0]
+    for color, name, unit in ((charts.COLORS[1], "walk", "rays"), (charts.COLORS[2], "table", "nm")):
+        steps, times, errors = zip(*rows[name])
+        panel.loglog(times, errors, "o-", color=color, label={"walk": "walk, by rays for each pair", "table": "table, by its step"}[name])
+        for step, time, error in zip(steps, times, errors):
+            panel.annotate(f"{step:,} {unit}", (time, error), textcoords="offset points", xytext=(6, 5))
+    panel.margins(0.16, 0.12)
+    panel.axvline(rows["solution"], color="black", linestyle="--", label="solution, without noise")
+    panel.set(xlabel="CPU time (s)", ylabel="RMS error over the mean of Mb and Mf (%)")
+    charts.legend(of, panel, 3)
+    charts.save(of, path)
+
+
+def write_cost(options):
+    with tempfile.TemporaryDirectory() as temporary:
+        rows = cost(pathlib.Path(temporary), options.quick)
+    cost_chart(options.docs / "images" / "fluorescence" / "cost.svg", rows)
+    body = [["walk", f"{n:,} rays", f"{time:.2f} s", f"{error:.2g} %"] for n, time, error in rows["walk"]]
+    body += [["table, every", f"{n} nm", f"{time:.2f} s", f"{error:.2g} %"] for n, time, error in rows["table"]]
+    write_section(options.docs / "fluorescence.md", "fluorescence_cost", f"""## Error against time
+
+Measured by `measurements/run fluorescence` on {machine()}: Mb and Mf of the soybean leaf for 9 wavelengths of excitation and 11 of
+emission, on one thread, with the start of the program. The solution takes {rows["solution"]:.2f} s; errors are RMS differences from it,
+relative to the mean.
+
+{table(["method", "", "CPU time", "error"], body)}
+![Error against CPU time of walk and table, and the time of the solution](images/fluorescence/cost.svg)
+""", script="fluorescence")
+
+
 def main():
     options = arguments("fluorescence", ("--reference", {"type": pathlib.Path, "required": True, "metavar": "FOLDER"}))
+    write_cost(options)
     excitation = list(range(400, 751, 50 if options.quick else 5))
     emission = [640, 685, 740, 850] if options.quick else list(range(640, 851, 5))
     with tempfile.TemporaryDirectory() as temporary:
