@@ -17,6 +17,7 @@
 #include "jobs/support/time_series.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/instance_errors.h"
+#include "radiometry/radiometer_scene.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"
 
@@ -185,20 +186,6 @@ SpectrumPtr named_irradiance(const JobRun& run) {
   const std::string light = run.args.text("irradiance");
   if (light.empty() || light == kOfScene) return nullptr;
   return named_or_read_spectrum(light, light, {});
-}
-
-/// Returns the first light of the scene without a unit; nullptr if there is none. The light sky keeps the unit of its
-/// data; its illuminance has none. Lamps have one if their power is stated in W or umol/s.
-const ParsedPlugin* light_without_unit(const SceneDescription& description) {
-  const auto has_unit = [](const ParsedPlugin& light) {
-    if (light.name == "sky") return !find_param(light.params, "illuminance");
-    return find_param(light.params, "radiantpower") || find_param(light.params, "photonflux");
-  };
-  for (const auto& [light, _] : description.lights)
-    if (!has_unit(light)) return &light;
-  for (const ParsedPlugin& light : description.area_lights)
-    if (!has_unit(light)) return &light;
-  return nullptr;
 }
 
 /// Returns the name of the light of photons: --irradiance, or the scene's light if it has a unit.

@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "core/math/sampling.h"
-#include "core/stop.h"
 #include "integrators/excitation.h"
-#include "integrators/path_parts.h"
 #include "integrators/path_state.h"
 #include "radiometry/flux_sums.h"
 #include "radiometry/incident_light.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
+#include "radiometry/trace_blocks.h"
 #include "scene/fluorescence_by_material.h"
 #include "scene/format/plugin_text.h"
+#include "spectra/wavelengths/radiant.h"
 #include "spectra/wavelengths/spectrum_points.h"
 #include "system/machine.h"
 
@@ -40,7 +39,7 @@ double photons_of(const Spectrum& irradiance) {
   double sum = 0;
   for (size_t i = 1; i < nm.size(); ++i) {
     const double middle = (nm[i] + nm[i - 1]) / 2;
-    sum += (nm[i] - nm[i - 1]) * double(irradiance.at(float(middle))) * photons_per_energy(middle);
+    sum += (nm[i] - nm[i - 1]) * double(irradiance.at(float(middle))) * middle / kPhotonEnergy;
   }
   return sum;
 }
@@ -58,18 +57,6 @@ ExcitationSampler excitation_of(const std::vector<std::shared_ptr<const Fluoresc
 }
 
 }  // namespace
-
-double photons_per_energy(double nm) {
-  // Planck constant times speed of light times Avogadro constant, J m / mol (exact since 2019); nm and umol.
-  constexpr double kEnergy = 6.62607015e-34 * 299792458 * 6.02214076e23 * 1e9 * 1e-6;
-  return nm / kEnergy;
-}
-
-bool has_radiometric_light(const SceneDescription& description) {
-  return !description.lights.empty() && std::ranges::all_of(description.lights, [](const LightDescription& light) {
-    return light.plugin.name == "sky" && !find_param(light.plugin.params, "illuminance");
-  });
-}
 
 struct FluorescenceFluxMeter::State {
   LoadedScene loaded;
@@ -117,7 +104,7 @@ class FluorescenceFluxMeter::Block {
     }
   }
   /// Adds to the sums of instances, which have no block of their own: once the block counts.
-  void add_instances() {
+  void add_organs() {
     for (const auto& [instance, quantity, share] : of_instances_) state_.by_instance->add(instance, quantity, share);
     of_instances_ = {};
   }
@@ -146,8 +133,8 @@ class FluorescenceFluxMeter::Block {
     SampledSpectrum photons;
     for (int e = 0; e < lambda.count; ++e) {
       const float nm = lambda.nm[size_t(e)], density = lambda.pdf[size_t(e)] * float(lambda.count);
-      photons[e] = light->weight[e] * state_.irradiance->at(nm) *
-                   float(photons_per_energy(double(nm)) / state_.incident) / density;
+      photons[e] =
+          light->weight[e] * state_.irradiance->at(nm) * float(double(nm) / kPhotonEnergy / state_.incident) / density;
     }
     if (photons.is_black()) return;
     const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
@@ -330,47 +317,14 @@ const Target& FluorescenceFluxMeter::target() const { return state_->target; }
 uint64_t FluorescenceFluxMeter::paths() const { return state_->paths; }
 
 void FluorescenceFluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control) {
-  // Blocks are traced in batches; their sums are added in order, so that the result does not depend on threads.
-  constexpr uint64_t kBlocks = 256;
-  RenderStatistics statistics;
-  const RenderTimer timer;
-  const StopScope stop(control.stop);
-  const DeadlineScope deadline(control.deadline);
-  for (uint64_t done = 0; done < paths && !control.is_over();) {
-    const uint64_t round = std::min(paths - done, kBlocks * Block::kPaths);
-    std::vector<std::unique_ptr<Block>> blocks((round + Block::kPaths - 1) / Block::kPaths);
-    size_t complete = 0;  // number of the first blocks that are complete
-    std::mutex in_order;
-    try {
-      pool.for_each(int64_t(blocks.size()), [&](int64_t block, int) {
-        const uint64_t begin = uint64_t(block) * Block::kPaths;
-        auto one = std::make_unique<Block>(*state_);
-        one->trace(state_->paths + begin, std::min(Block::kPaths, round - begin));
-        const std::lock_guard lock(in_order);
-        blocks[size_t(block)] = std::move(one);
-        for (; complete < blocks.size() && blocks[complete]; ++complete) blocks[complete]->add_instances();
+  State& s = *state_;
+  trace_blocks<Block>(
+      s.loaded, s.paths, paths, pool, control, [&s] { return std::make_unique<Block>(s); },
+      [&s](const Block& block) {
+        s.excited += block.excited;
+        for (size_t i = 0; i < s.moments.size(); ++i) s.moments[i] += block.moments[i];
+        for (size_t i = 0; i < s.emissions; ++i) s.seen[i] += block.seen[i], s.escape[i] += block.escape[i];
       });
-    } catch (const SurfaceError& error) {
-      const MaterialDescription& material = state_->loaded.description().materials[error.material_id];
-      fail(material.plugin.where, "{} has a defect: {}", name_in_messages(material), error.what());
-    } catch (const Stopped&) {  // those before the first incomplete block count
-      if (!control.is_over()) throw;
-      blocks.resize(complete);
-    }
-    for (const auto& one : blocks) {
-      state_->excited += one->excited;
-      for (size_t i = 0; i < state_->moments.size(); ++i) state_->moments[i] += one->moments[i];
-      for (size_t i = 0; i < state_->emissions; ++i)
-        state_->seen[i] += one->seen[i], state_->escape[i] += one->escape[i];
-    }
-    const uint64_t traced = std::min(round, blocks.size() * Block::kPaths);
-    state_->paths += traced;
-    done += traced;
-    statistics.paths = done;
-    timer.read(statistics);
-    if (control.progress) control.progress->update(double(done) / double(paths), statistics);
-  }
-  if (control.progress) control.progress->finish();
 }
 
 FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {

@@ -65,10 +65,4 @@ class FluorescenceFluxMeter {
   std::unique_ptr<State> state_;
 };
 
-/// Returns the factor that converts W m^-2 nm^-1 at a wavelength to umol m^-2 s^-1 nm^-1.
-double photons_per_energy(double nm);
-
-/// Whether the radiance of a scene has the unit W m^-2 sr^-1 nm^-1: all light is that of "sky" without "illuminance".
-bool has_radiometric_light(const SceneDescription& description);
-
 }  // namespace frond

@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
-#include "core/stop.h"
-#include "integrators/path_parts.h"
 #include "integrators/path_state.h"
 #include "radiometry/flux_sums.h"
 #include "radiometry/incident_light.h"
@@ -15,6 +12,7 @@
 #include "radiometry/photons.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/sums_file.h"
+#include "radiometry/trace_blocks.h"
 #include "scene/geometry/shape_emitter.h"
 #include "scene/leaf_models.h"
 #include "system/machine.h"
@@ -334,48 +332,14 @@ const Organs* FluxMeter::organs() const { return state_->organs.get(); }
 
 void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control,
                       const std::function<void()>& after_round) {
-  // Blocks are traced in batches; their sums are added in order, so that the result does not depend on threads.
-  constexpr uint64_t kBlocks = 256;
-  RenderStatistics statistics;
-  const RenderTimer timer;
-  const StopScope stop(control.stop);
-  const DeadlineScope deadline(control.deadline);
-  for (uint64_t done = 0; done < paths && !control.is_over();) {
-    const uint64_t round = std::min(paths - done, kBlocks * Block::kPaths);
-    const uint64_t blocks = (round + Block::kPaths - 1) / Block::kPaths;
-    std::vector<std::unique_ptr<Block>> traced_blocks(blocks);
-    size_t complete = 0;  // number of the first blocks that are complete
-    std::mutex in_order;
-    const auto trace_block = [&](int64_t block, int) {
-      const uint64_t begin = uint64_t(block) * Block::kPaths;
-      auto one = std::make_unique<Block>(*state_);
-      one->trace(state_->paths + begin, std::min(Block::kPaths, round - begin));
-      const std::lock_guard lock(in_order);
-      traced_blocks[size_t(block)] = std::move(one);
-      for (; complete < blocks && traced_blocks[complete]; ++complete) traced_blocks[complete]->add_organs();
-    };
-    try {
-      pool.for_each(int64_t(blocks), trace_block);
-    } catch (const SurfaceError& error) {
-      const MaterialDescription& material = state_->loaded.description().materials[error.material_id];
-      fail(material.plugin.where, "{} has a defect: {}", name_in_messages(material), error.what());
-    } catch (const Stopped&) {  // those before the first incomplete block count
-      if (!control.is_over()) throw;
-      traced_blocks.resize(complete);
-    }
-    const uint64_t traced = std::min(round, traced_blocks.size() * Block::kPaths);
-    for (const auto& one : traced_blocks) {
-      for (size_t i = 0; i < state_->moments.size(); ++i) state_->moments[i] += one->moments[i];
-      for (size_t i = 0; i < state_->seen.size(); ++i) state_->seen[i] += one->seen[i];
-    }
-    state_->paths += traced;
-    done += traced;
-    statistics.paths = done;
-    timer.read(statistics);
-    if (control.progress) control.progress->update(double(done) / double(paths), statistics);
-    if (after_round) after_round();
-  }
-  if (control.progress) control.progress->finish();
+  State& s = *state_;
+  trace_blocks<Block>(
+      s.loaded, s.paths, paths, pool, control, [&s] { return std::make_unique<Block>(s); },
+      [&s](const Block& block) {
+        for (size_t i = 0; i < s.moments.size(); ++i) s.moments[i] += block.moments[i];
+        for (size_t i = 0; i < s.seen.size(); ++i) s.seen[i] += block.seen[i];
+      },
+      after_round);
 }
 
 uint64_t FluxMeter::paths() const { return state_->paths; }

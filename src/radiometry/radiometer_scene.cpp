@@ -118,6 +118,18 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
     set_param(integrator.params, parsed_numbers("integer", "scatteredrays", {1}));
 }
 
+const ParsedPlugin* light_without_unit(const SceneDescription& description) {
+  const auto has_unit = [](const ParsedPlugin& light) {
+    if (light.name == "sky") return !find_param(light.params, "illuminance");
+    return find_param(light.params, "radiantpower") || find_param(light.params, "photonflux");
+  };
+  for (const auto& [light, _] : description.lights)
+    if (!has_unit(light)) return &light;
+  for (const ParsedPlugin& light : description.area_lights)
+    if (!has_unit(light)) return &light;
+  return nullptr;
+}
+
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,
                              const std::optional<std::array<double, 2>>& period) {
   std::string text = what;

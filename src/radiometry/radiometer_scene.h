@@ -18,6 +18,11 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description, bool fluorescence = false);
 
+/// Returns the first light of a scene without a unit, whose energies are in units of the scene; nullptr if there is
+/// none. The light "sky" keeps the unit of its data, W and m; its illuminance has none. Lamps have one if their power
+/// is stated in W or umol/s.
+const ParsedPlugin* light_without_unit(const SceneDescription& description);
+
 /// Returns a text that identifies a measurement together with the scene's own identity. `what`: its kind and other
 /// parameters.
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,

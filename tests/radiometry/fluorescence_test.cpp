@@ -11,6 +11,7 @@
 #include "scene/fluorescence_by_material.h"
 #include "scene/format/parser.h"
 #include "spectra/cie.h"
+#include "spectra/wavelengths/radiant.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -178,7 +179,7 @@ TEST_F(SceneFluorescence, LightPathsAndCameraPathsAgree) {
     for (size_t band = 0; band < kEmission.size(); ++band) {
       double photons = 0, variance = 0;
       for (size_t view = 0; view < views.size(); ++view) {
-        const double factor = weights[view] * photons_per_energy(kEmission[band]) / counted.incident;
+        const double factor = weights[view] * kEmission[band] / kPhotonEnergy / counted.incident;
         photons += factor * seen.at(view, band).mean;
         variance += std::pow(factor * seen.at(view, band).standard_error, 2);
       }

@@ -8,6 +8,8 @@
 
 #include "jobs/support/radiometry.h"
 #include "jobs/support/time_limit.h"
+#include "radiometry/radiometer_scene.h"
+#include "spectra/wavelengths/radiant.h"
 
 namespace frond {
 namespace {
@@ -36,15 +38,14 @@ std::vector<std::string> notes_of(const JobRun& run, const FluorescenceFluxMeasu
   return notes;
 }
 
-/// Warns of lights without a unit, whose fluorescence has none either.
+/// Warns of a light without a unit, whose fluorescence has none either. Returns whether there is none.
 bool check_units(const JobRun& run, const SceneDescription& description) {
-  const bool has_units = has_radiometric_light(description);
-  if (!has_units)
-    run.log().warn(
-        {},
-        "not all of the light is that of LightSource \"sky\" without \"illuminance\": fluorescence is in units "
-        "of the scene's light");
-  return has_units;
+  const ParsedPlugin* light = light_without_unit(description);
+  if (light)
+    run.log().warn(light->where,
+                   "this light has no unit, so that fluorescence is in units of the scene's light: LightSource \"sky\" "
+                   "without \"illuminance\" has one");
+  return !light;
 }
 
 /// Units of the columns that count photons.
@@ -64,7 +65,7 @@ Table balance_table(const FluorescenceFluxMeasurement& m) {
     table.add("photons", share);
     table.add("photon_flux", scaled(share, 1e3 * m.incident));
     table.add("energy_flux",
-              std::isnan(nm) ? MeanError{kNone, kNone} : scaled(share, 1e3 * m.incident / photons_per_energy(nm)));
+              std::isnan(nm) ? MeanError{kNone, kNone} : scaled(share, 1e3 * m.incident * kPhotonEnergy / nm));
   };
   const auto add_all = [&](const std::string& quantity, const std::string& material,
                            const std::vector<MeanError>& shares) {
@@ -165,7 +166,7 @@ Result fluorescence_brf_result(const JobRun& run, const BrfMeter& meter, const B
     for (size_t band = 0; band < measurement.bands.size(); ++band) {
       const MeanError& radiance = measurement.at(view, band);
       const double nm = measurement.bands[band].nm;
-      const MeanError photons = scaled(radiance, photons_per_energy(nm));
+      const MeanError photons = scaled(radiance, nm / kPhotonEnergy);
       table.add("zenith_deg", direction.zenith_deg);
       table.add("azimuth_deg", direction.azimuth_deg);
       table.add("wavelength_nm", nm);
