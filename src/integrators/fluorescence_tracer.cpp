@@ -6,6 +6,7 @@
 #include "core/stop.h"
 #include "integrators/path_parts.h"
 #include "integrators/path_state.h"
+#include "integrators/vertex_numbers.h"
 
 namespace frond {
 namespace {
@@ -293,12 +294,7 @@ class FluorescenceTracer final : public Tracer {
   /// Draws a number, or a pair of numbers, of the sampler for this vertex; Number::distance for the excitation.
   template <class T>
   T draw(Number number) const {
-    constexpr uint32_t kNumbers = uint32_t(Number::distance) + 1;
-    const PixelSamples& s = bundle_->samples;
-    T u;
-    get_numbers(bundle_->sampler, {s.x, s.y, s.first + lane_, 1},
-                dimension_of(*bundle_, uint64_t(vertex_), number, kNumbers), &u);
-    return u;
+    return draw_number<T>(*bundle_, lane_, vertex_, number);
   }
 
   const World& world_;

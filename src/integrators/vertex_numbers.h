@@ -105,4 +105,15 @@ void draw_numbers(const PathBundle& bundle, uint64_t vertex, Number number, cons
   }
 }
 
+/// Draws the number, or the pair of numbers, of one vertex of one path of a bundle, whose vertices have all Numbers.
+template <class T>
+T draw_number(const PathBundle& bundle, size_t lane, int vertex, Number number) {
+  constexpr uint32_t kNumbers = uint32_t(Number::distance) + 1;
+  const PixelSamples& s = bundle.samples;
+  T u;
+  get_numbers(bundle.sampler, {s.x, s.y, s.first + lane, 1}, dimension_of(bundle, uint64_t(vertex), number, kNumbers),
+              &u);
+  return u;
+}
+
 }  // namespace frond

@@ -297,12 +297,7 @@ class VolPathTracer final : public Tracer {
   /// Draws a number, or a pair of numbers, of the sampler for this vertex.
   template <class T>
   T draw(Number number) const {
-    constexpr uint32_t kNumbers = uint32_t(Number::distance) + 1;
-    const PixelSamples& s = bundle_->samples;
-    T u;
-    get_numbers(bundle_->sampler, {s.x, s.y, s.first + lane_, 1},
-                dimension_of(*bundle_, uint64_t(vertex_), number, kNumbers), &u);
-    return u;
+    return draw_number<T>(*bundle_, lane_, vertex_, number);
   }
 
   const World& world_;
