@@ -27,13 +27,13 @@ class SceneFluorescenceJobs : public CommandTest {
   }
 };
 
-constexpr const char* kSky = "LightSource \"sky\" \"float elevation\" 60\n";
-constexpr const char* kSun =
+constexpr const char* kClearSky = "LightSource \"sky\" \"float elevation\" 60\n";
+constexpr const char* kLowSun =
     "LightSource \"distant\" \"point3 from\" [-1 0 2] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-E\"\n";
 
 TEST_F(SceneFluorescenceJobs, BrfWritesRadiancesAndEscapeFractions) {
-  const Outcome o = measured(kSky, {"brf", "--zenith", "0,40", "--emission", "685,740", "--paths", "256", "--csv", "-",
-                                    "--json", path("f.json")});
+  const Outcome o = measured(kClearSky, {"brf", "--zenith", "0,40", "--emission", "685,740", "--paths", "256", "--csv",
+                                         "-", "--json", path("f.json")});
   ASSERT_EQ(o.code, 0) << o.err;
   const CsvTable csv = parse_csv(o.out);
   EXPECT_EQ(csv.names,
@@ -53,12 +53,13 @@ TEST_F(SceneFluorescenceJobs, BrfWritesRadiancesAndEscapeFractions) {
   const auto json = nlohmann::json::parse(bytes_of(path("f.json")));
   EXPECT_EQ(json["quantity"], "fluorescence");
   EXPECT_EQ(json["escape"].size(), 2u);
-  EXPECT_THAT(measured(kSun, {"brf", "--zenith", "0", "--paths", "64"}).err, HasSubstr("units of the scene's light"));
+  EXPECT_THAT(measured(kLowSun, {"brf", "--zenith", "0", "--paths", "64"}).err,
+              HasSubstr("units of the scene's light"));
 }
 
 TEST_F(SceneFluorescenceJobs, FluxCountsPhotonsByLeaf) {
-  const Outcome o = measured(kSky, {"flux", "--by", "instance", "--emission", "740", "--paths", "4096", "--csv",
-                                    path("leaves.csv"), "--json", path("f.json")});
+  const Outcome o = measured(kClearSky, {"flux", "--by", "instance", "--emission", "740", "--paths", "4096", "--csv",
+                                         path("leaves.csv"), "--json", path("f.json")});
   ASSERT_EQ(o.code, 0) << o.err;
   const CsvTable leaves = parse_csv(bytes_of(path("leaves.csv")));
   ASSERT_EQ(leaves.rows.size(), 2u);
@@ -83,7 +84,7 @@ TEST_F(SceneFluorescenceJobs, ImagesAndPartsHaveItsBands) {
   folder_.write("image.pbrt",
                 "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"orthographic\"\n"
                 "Film \"rgb\" \"integer xresolution\" 6 \"integer yresolution\" 4\nWorldBegin\n" +
-                    std::string(kSky) +
+                    std::string(kClearSky) +
                     "Material \"leaf_lambert\" \"string tablefile\" \"shares.csv\" \"string fluorescencematrices\" "
                     "\"matrices.csv\"\nShape \"disk\" \"float radius\" 9\n");
   const auto run = [&](const Words& more) {
@@ -108,8 +109,8 @@ TEST_F(SceneFluorescenceJobs, ImagesAndPartsHaveItsBands) {
 
 /// No emission at 640 nm: its error does not count.
 TEST_F(SceneFluorescenceJobs, RefinesAlsoWhereNothingIsEmitted) {
-  const Outcome o = measured(
-      kSky, {"brf", "--zenith", "0", "--emission", "640,740", "--rms", "0.02", "--csv", "-", "--plot", path("f.svg")});
+  const Outcome o = measured(kClearSky, {"brf", "--zenith", "0", "--emission", "640,740", "--rms", "0.02", "--csv", "-",
+                                         "--plot", path("f.svg")});
   ASSERT_EQ(o.code, 0) << o.err;
   const CsvTable csv = parse_csv(o.out);
   EXPECT_EQ(csv.rows.size(), 2u);
@@ -118,8 +119,8 @@ TEST_F(SceneFluorescenceJobs, RefinesAlsoWhereNothingIsEmitted) {
 }
 
 TEST_F(SceneFluorescenceJobs, SaysWhatIsMissing) {
-  EXPECT_THAT(measured(kSky, {"flux", "--emission", "600"}).err, HasSubstr("from 640 to 850"));
-  EXPECT_THAT(measured(kSky, {"brf", "--wavelengths", "740"}).err, HasSubstr("--wavelengths"));
+  EXPECT_THAT(measured(kClearSky, {"flux", "--emission", "600"}).err, HasSubstr("from 640 to 850"));
+  EXPECT_THAT(measured(kClearSky, {"brf", "--wavelengths", "740"}).err, HasSubstr("--wavelengths"));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 std::string format(const std::string& bytes, const char* name = "f.png") {
   return std::string(image_format_of(bytes, name, {}));
 }
-std::string refusal(const std::string& bytes, const char* name = "f.png") {
+std::string refusal_of_bytes(const std::string& bytes, const char* name = "f.png") {
   return error_of([&] { image_format_of(bytes, name, {}); });
 }
 
@@ -39,32 +39,32 @@ TEST(ImageSignatures, AreThoseOfTheFormatsThatAreRead) {
 
 TEST(ImageSignatures, OtherFormatsAreRefusedByName) {
   EXPECT_EQ(
-      refusal("FOR4\0\0\0\x10"
-              "CIMG"s),
+      refusal_of_bytes("FOR4\0\0\0\x10"
+                       "CIMG"s),
       "cannot read image \"f.png\": its format is IFF; images are EXR, PNG, JPEG, HDR, TIFF, PFM, BMP, WebP or TGA");
-  EXPECT_THAT(refusal("SDPX"), HasSubstr("its format is DPX"));
-  EXPECT_THAT(refusal("GIF89a"), HasSubstr("its format is GIF"));
-  EXPECT_THAT(refusal("P6\n1 1\n255\n"), HasSubstr("its format is Netpbm"));
-  EXPECT_THAT(refusal("#EXTM3U\nhttp://host/a.ts\n", "v.avi"), HasSubstr("its format is playlist"));
-  EXPECT_THAT(refusal("\0\0\0\x18"
-                      "ftypmp42"s,
-                      "v.mp4"),
+  EXPECT_THAT(refusal_of_bytes("SDPX"), HasSubstr("its format is DPX"));
+  EXPECT_THAT(refusal_of_bytes("GIF89a"), HasSubstr("its format is GIF"));
+  EXPECT_THAT(refusal_of_bytes("P6\n1 1\n255\n"), HasSubstr("its format is Netpbm"));
+  EXPECT_THAT(refusal_of_bytes("#EXTM3U\nhttp://host/a.ts\n", "v.avi"), HasSubstr("its format is playlist"));
+  EXPECT_THAT(refusal_of_bytes("\0\0\0\x18"
+                               "ftypmp42"s,
+                               "v.mp4"),
               HasSubstr("its format is HEIF, AVIF or MP4"));
-  EXPECT_THAT(refusal("RIFF\1\0\0\0AVI LIST"s), HasSubstr("its format is AVI"));
-  EXPECT_THAT(refusal("BM and other text that begins so"), HasSubstr("its content is that of no image"));
-  EXPECT_THAT(refusal("", "x.null"), HasSubstr("\"x.null\": the file is empty"));
+  EXPECT_THAT(refusal_of_bytes("RIFF\1\0\0\0AVI LIST"s), HasSubstr("its format is AVI"));
+  EXPECT_THAT(refusal_of_bytes("BM and other text that begins so"), HasSubstr("its content is that of no image"));
+  EXPECT_THAT(refusal_of_bytes("", "x.null"), HasSubstr("\"x.null\": the file is empty"));
 }
 
 /// TGA has no signature: any bytes could be one.
 TEST(ImageSignatures, TgaNeedsItsExtensionAndAValidHeader) {
-  EXPECT_THAT(refusal(tga(), "f.png"), HasSubstr("that of no image"));
+  EXPECT_THAT(refusal_of_bytes(tga(), "f.png"), HasSubstr("that of no image"));
   constexpr std::pair<size_t, char> kFaults[] = {{1, 1}, {2, 7}, {2, 1}, {12, 0}, {14, 0}, {16, 5}, {17, '\xc0'}};
   for (const auto& [at, value] : kFaults) {
     std::string bytes = tga();
     bytes[at] = value;
-    EXPECT_THAT(refusal(bytes, "f.tga"), HasSubstr("cannot read image")) << at;
+    EXPECT_THAT(refusal_of_bytes(bytes, "f.tga"), HasSubstr("cannot read image")) << at;
   }
-  EXPECT_THAT(refusal(tga().substr(0, 18), "f.tga"), HasSubstr("that of no image"));
+  EXPECT_THAT(refusal_of_bytes(tga().substr(0, 18), "f.tga"), HasSubstr("that of no image"));
 }
 
 /// When the name chose the reader, these files corrupted the heap, crashed the program or did not terminate.

@@ -29,7 +29,7 @@ struct Read {
   std::vector<std::string> losses;
 };
 
-std::string refusal(const std::string& obj) {
+std::string refusal_of_obj(const std::string& obj) {
   try {
     Read read(obj);
   } catch (const std::runtime_error& error) {
@@ -70,17 +70,17 @@ TEST(ObjText, FacesThatAreNoneAreNamed) {
               ElementsAre("texture coordinates (vt) that the file does not have, first in line 5"));
   EXPECT_THAT(Read(kTriangle + "vn 0 0 1\nusemtl m\nf 1//1 2 3\n", "newmtl m\n").losses,
               ElementsAre("normals (vn) at some corners of a face only, first in line 6"));
-  EXPECT_EQ(refusal(kTriangle + "f 1 2 4\n"), "line 4: the face has vertex \"4\", which the file does not have");
-  EXPECT_EQ(refusal(kTriangle + "f 1 2 0\n"), "line 4: \"0\" is no index: they are numbers from 1 or below 0");
-  EXPECT_THAT(refusal(kTriangle + "f 1 2 x\n"), HasSubstr("line 4: \"x\" is no index"));
-  EXPECT_THAT(refusal(kTriangle + "f 1/1/1/1 2 3\n"), HasSubstr("line 4: a corner of a face has up to three"));
+  EXPECT_EQ(refusal_of_obj(kTriangle + "f 1 2 4\n"), "line 4: the face has vertex \"4\", which the file does not have");
+  EXPECT_EQ(refusal_of_obj(kTriangle + "f 1 2 0\n"), "line 4: \"0\" is no index: they are numbers from 1 or below 0");
+  EXPECT_THAT(refusal_of_obj(kTriangle + "f 1 2 x\n"), HasSubstr("line 4: \"x\" is no index"));
+  EXPECT_THAT(refusal_of_obj(kTriangle + "f 1/1/1/1 2 3\n"), HasSubstr("line 4: a corner of a face has up to three"));
 }
 
 /// The library would drop such vertices, and shift the indices of all that follow.
 TEST(ObjText, VerticesThatAreNoneAreErrors) {
-  EXPECT_EQ(refusal("v 0 0\n"), "line 1: \"v\" needs 3 numbers, it has 2");
-  EXPECT_EQ(refusal("v 0 0 0\nv 0 0 x\n"), "line 2: \"x\" is no number");
-  EXPECT_EQ(refusal("v 0 0 0 0\n"), "line 1: the weight of the vertex is 0");
+  EXPECT_EQ(refusal_of_obj("v 0 0\n"), "line 1: \"v\" needs 3 numbers, it has 2");
+  EXPECT_EQ(refusal_of_obj("v 0 0 0\nv 0 0 x\n"), "line 2: \"x\" is no number");
+  EXPECT_EQ(refusal_of_obj("v 0 0 0 0\n"), "line 1: the weight of the vertex is 0");
   EXPECT_EQ(Read("v 1 2 3 0.1 0.2 0.3 1\nv 1 2 3 4 5\n").model, "v 1 2 3\nv 1 2 3");
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kPixels = 20000;
 /// Each bound below fails by chance less than once in a million seeds.
-constexpr double kZ = 5;
+constexpr double kErrorZ = 5;
 
 struct Images {
   std::vector<float> a1, a2, r1, r2;
@@ -36,7 +36,7 @@ RenderError error_of(const Images& p, std::span<const float> use = {}) {
 }
 
 void expect_near(const MeanSquare& m, double expected) {
-  EXPECT_NEAR(m.value, expected, kZ * m.standard_error);
+  EXPECT_NEAR(m.value, expected, kErrorZ * m.standard_error);
   EXPECT_LT(m.standard_error, 0.1 * expected);
 }
 
@@ -52,7 +52,7 @@ TEST(RenderError, TellsBiasFromNoiseAndFromTheReferencesNoise) {
 
 TEST(RenderError, OfAnUnbiasedMethodHasNoBiasButItsInterval) {
   const RenderError e = error_of(images(0, 0.05, 0.03));
-  EXPECT_NEAR(e.bias.value, 0, kZ * e.bias.standard_error);
+  EXPECT_NEAR(e.bias.value, 0, kErrorZ * e.bias.standard_error);
   EXPECT_GT(e.bias.standard_error, 0);
 }
 

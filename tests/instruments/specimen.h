@@ -4,21 +4,9 @@
 #include "instruments/rays.h"
 #include "instruments/sweep.h"
 #include "materials/registry.h"
+#include "tests/support/parsed_params.h"
 
 namespace frond::test {
-
-inline ParsedParam word(const std::string& name, const std::string& value) {
-  return {"string", name, {}, {}, std::vector<std::string>{value}};
-}
-
-inline ParsedParam real(const std::string& name, double value) {
-  return {"float", name, {}, {}, std::vector<double>{value}};
-}
-
-/// The same value at every wavelength.
-inline ParsedParam level(const std::string& name, double value) {
-  return {"spectrum", name, {}, {}, std::vector<double>{300, value, 3000, value}};
-}
 
 /// A material made ready for one wavelength.
 class Prepared {

@@ -19,7 +19,7 @@ std::string mixtures(int levels, const std::string& plugin) {
   return text;
 }
 
-std::string scene(const std::string& materials) {
+std::string mix_scene(const std::string& materials) {
   return fmt::format(R"(
 LookAt .6 0 .8  0 0 0  0 1 0
 Camera "orthographic" "float screenwindow" [-.1 .1 -.1 .1]
@@ -38,10 +38,10 @@ Shape "trianglemesh" "point3 P" [-9 -9 0  9 -9 0  9 9 0  -9 9 0] "integer indice
 TEST(Mix, OfManyStochasticMaterialsHasRoomForThem) {
   const std::string abm = R"("abm" "string specimen" "soybean")";
   for (const std::string wavelengths : {"smpte", "hero"}) {
-    const Film film = render_text(scene(mixtures(4, abm)), {.samples = 64, .wavelengths = wavelengths});
+    const Film film = render_text(mix_scene(mixtures(4, abm)), {.samples = 64, .wavelengths = wavelengths});
     EXPECT_EQ(film.not_finite(), 0u);
     // A mixture of a material with itself equals the material.
-    const Film one = render_text(scene(mixtures(0, abm)), {.samples = 64, .wavelengths = wavelengths});
+    const Film one = render_text(mix_scene(mixtures(0, abm)), {.samples = 64, .wavelengths = wavelengths});
     for (size_t c = 0; c < 3; ++c) {
       const auto a = testing::channel_mean(film, c), b = testing::channel_mean(one, c);
       EXPECT_GT(b.mean, 0);

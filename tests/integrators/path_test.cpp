@@ -23,8 +23,8 @@ constexpr const char* kDirect[] = {
 constexpr double kSigmas = 5;
 
 /// Orthographic camera 1 unit above the origin, looking down on the square [-extent, extent]^2 of the plane z = 0.
-std::string looking_down(const std::string& world, double extent = 0.01, int size = 4,
-                         const std::string& integrator = "\"integer maxdepth\" 1") {
+std::string plane_from_above(const std::string& world, double extent = 0.01, int size = 4,
+                             const std::string& integrator = "\"integer maxdepth\" 1") {
   return fmt::format(R"(
 LookAt 0 0 1  0 0 0  0 1 0
 Camera "orthographic" "float screenwindow" [-{0} {0} -{0} {0}]
@@ -69,7 +69,7 @@ TEST(Path, LosslessGlassAroundWhiteIsNotSeenInAFurnace) {
        {"\"integer maxdepth\" 100000",
         "\"integer maxdepth\" 100000 \"string termination\" \"attenuation\" \"float cutoff\" 0.5"})
     for (const std::string& world : {sky + glass, sky + glass + white}) {
-      const Film film = render_text(looking_down(world, 0.6, 8, integrator), {.samples = 64});
+      const Film film = render_text(plane_from_above(world, 0.6, 8, integrator), {.samples = 64});
       // All paths have equal weights: no noise except for rounding.
       for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) EXPECT_NEAR(film.mean(x, y)[1], 1, 1e-3) << x << ", " << y << ", " << integrator;
@@ -77,14 +77,14 @@ TEST(Path, LosslessGlassAroundWhiteIsNotSeenInAFurnace) {
 }
 
 TEST(Path, DistantLightOnADiffusePlane) {
-  const Film film = render_text(looking_down(
+  const Film film = render_text(plane_from_above(
       kGrey + kPlane +
       R"(LightSource "distant" "point3 from" [0 3 4] "point3 to" [0 0 0] "spectrum L" "stdillum-D65" "float scale" 2)"));
   expect_mean(film, 0.4 * 2 * 0.8 / std::numbers::pi);
 }
 
 TEST(Path, PointLightFallsOffWithTheSquare) {
-  const Film film = render_text(looking_down(
+  const Film film = render_text(plane_from_above(
       kGrey + kPlane + R"(LightSource "point" "point3 from" [0 0 2] "spectrum I" "stdillum-D65" "float scale" 3)",
       1e-4));
   expect_mean(film, 0.4 * 3 / 4 / std::numbers::pi);
@@ -93,10 +93,11 @@ TEST(Path, PointLightFallsOffWithTheSquare) {
 TEST(Path, SpotLightIsAPointLightInsideItsCone) {
   const std::string spot =
       R"(LightSource "spot" "point3 from" [0 0 2] "point3 to" [{} 0 0] "spectrum I" "stdillum-D65" "float scale" 3)";
-  expect_mean(render_text(looking_down(kGrey + kPlane + fmt::format(fmt::runtime(spot), 0), 1e-4)),
+  expect_mean(render_text(plane_from_above(kGrey + kPlane + fmt::format(fmt::runtime(spot), 0), 1e-4)),
               0.4 * 3 / 4 / std::numbers::pi);
-  EXPECT_EQ(channel_mean(render_text(looking_down(kGrey + kPlane + fmt::format(fmt::runtime(spot), 3), 1e-4)), 0).mean,
-            0);
+  EXPECT_EQ(
+      channel_mean(render_text(plane_from_above(kGrey + kPlane + fmt::format(fmt::runtime(spot), 3), 1e-4)), 0).mean,
+      0);
 }
 
 /// Irradiance under a Lambertian emitter of radiance L, in closed form, with the light in front of the plane at (0, 0,
@@ -122,7 +123,7 @@ TEST_P(AreaLights, IrradianceIsTheFormFactor) {
   for (const char* direct : kDirect) {
     const std::string integrator = fmt::format("\"integer maxdepth\" 1 {}", direct);
     // The camera looks from under the light.
-    const Film film = render_text(looking_down(kGrey + kPlane + light, 1e-4, 16, integrator), {.samples = 256});
+    const Film film = render_text(plane_from_above(kGrey + kPlane + light, 1e-4, 16, integrator), {.samples = 256});
     const double error = expect_mean(film, expected);
     EXPECT_LT(error, 0.02) << "the test has lost its power";
   }
@@ -148,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Path, OneSidedEmissionFacesTheFront) {
   const std::string light = R"(AreaLightSource "diffuse" "spectrum L" "stdillum-D65" Translate 0 0 2 Shape "disk")";
-  EXPECT_EQ(channel_mean(render_text(looking_down(kGrey + kPlane + light, 1e-4)), 0).mean, 0);
+  EXPECT_EQ(channel_mean(render_text(plane_from_above(kGrey + kPlane + light, 1e-4)), 0).mean, 0);
 }
 
 TEST(Path, HalfAlphaHalvesWhatIsBehindAndTheShadow) {
@@ -158,13 +159,13 @@ TEST(Path, HalfAlphaHalvesWhatIsBehindAndTheShadow) {
 )";
   const std::string sun =
       R"(LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "spectrum L" "stdillum-D65")";
-  const Film shadowed = render_text(looking_down(kGrey + kPlane + blocker + sun, 0.01, 16), {.samples = 64});
+  const Film shadowed = render_text(plane_from_above(kGrey + kPlane + blocker + sun, 0.01, 16), {.samples = 64});
   EXPECT_LT(expect_mean(shadowed, 0.75 * 0.4 / std::numbers::pi), 0.02);
   const std::string screen =
       R"(AttributeBegin Material "diffuse" "spectrum reflectance" [360 0 2500 0] Translate 0 0 .5 Shape "disk" "float radius" .5 "float alpha" .25 AttributeEnd
 )";
   // The camera's ray and the shadow ray each pass with probability 3/4.
-  const Film twice = render_text(looking_down(kGrey + kPlane + screen + sun, 0.01, 16), {.samples = 64});
+  const Film twice = render_text(plane_from_above(kGrey + kPlane + screen + sun, 0.01, 16), {.samples = 64});
   EXPECT_LT(expect_mean(twice, 0.75 * 0.75 * 0.4 / std::numbers::pi), 0.02);
 }
 
@@ -176,7 +177,7 @@ TEST(Path, WhiteFurnaceIsWhite) {
                               R"("bilinearmesh" "point3 P" [-.7 -.6 0  .8 -.7 .3  -.9 .8 .2  .6 .7 -.3])"}) {
       const std::string world = fmt::format(
           "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\nMaterial {}\nShape {}\n", material, shape);
-      const Film film = render_text(looking_down(world, 1, 16, "\"integer maxdepth\" 1000"), {.samples = 64});
+      const Film film = render_text(plane_from_above(world, 1, 16, "\"integer maxdepth\" 1000"), {.samples = 64});
       EXPECT_LT(expect_mean(film, 1), 0.02) << material << shape;
     }
   }
@@ -189,8 +190,8 @@ class GlassFurnace : public ::testing::Test {
   static constexpr int kSize = 6;
 
   static std::string lit_by_the_sky(const std::string& world) {
-    return looking_down("LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n" + world, 0.9, kSize,
-                        "\"integer maxdepth\" 1000");
+    return plane_from_above("LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n" + world, 0.9, kSize,
+                            "\"integer maxdepth\" 1000");
   }
   static void expect_white_pixels(const Film& film, const std::string& what) {
     for (int y = 0; y < kSize; ++y)
@@ -241,7 +242,7 @@ AreaLightSource "diffuse" "spectrum L" "stdillum-D65" ReverseOrientation Shape "
 )";
   for (const char* direct : kDirect) {
     const std::string integrator = fmt::format("\"integer maxdepth\" 100000 {}", direct);
-    const Film film = render_text(looking_down(world, 0.5, 16, integrator), {.samples = 256});
+    const Film film = render_text(plane_from_above(world, 0.5, 16, integrator), {.samples = 256});
     EXPECT_LT(expect_mean(film, 1 / (1 - 0.6)), 0.01);
   }
 }
@@ -252,7 +253,7 @@ AreaLightSource "diffuse" "spectrum L" "stdillum-D65" ReverseOrientation Shape "
 )";
   for (int depth = 0; depth < 4; ++depth) {
     const Film film =
-        render_text(looking_down(world, 0.5, 16, fmt::format("\"integer maxdepth\" {}", depth)), {.samples = 64});
+        render_text(plane_from_above(world, 0.5, 16, fmt::format("\"integer maxdepth\" {}", depth)), {.samples = 64});
     expect_mean(film, (1 - std::pow(0.6, depth + 1)) / (1 - 0.6));
   }
 }
@@ -268,7 +269,7 @@ LightSource "infinite" "spectrum L" "stdillum-D65" "float scale" .5
     for (const char* direct : {kDirect[0], kDirect[1]}) {
       const std::string integrator =
           fmt::format("\"integer maxdepth\" 1 {} \"string lightsampler\" \"{}\"", direct, selector);
-      const Film film = render_text(looking_down(kGrey + kPlane + lights, 1e-4, 16, integrator), {.samples = 256});
+      const Film film = render_text(plane_from_above(kGrey + kPlane + lights, 1e-4, 16, integrator), {.samples = 256});
       EXPECT_LT(expect_mean(film, expected), 0.02) << selector;
     }
 }
@@ -280,11 +281,12 @@ TEST(Path, InstancesLookLikeWhatTheyCopy) {
 Shape "trianglemesh" "point3 P" [-.9 -.9 0  0 -.8 .1  -.5 0 .2] "normal N" [0 0 1  .1 0 1  0 .1 1] "integer indices" [0 1 2]
 )";
   const std::string moved = "Translate .2 .1 0 Rotate 30 1 2 3 Scale 1 .5 -1\n";
-  const std::string direct = looking_down(kGrey + light + "AttributeBegin " + moved + shapes + "AttributeEnd", 1, 32);
+  const std::string direct =
+      plane_from_above(kGrey + light + "AttributeBegin " + moved + shapes + "AttributeEnd", 1, 32);
   const std::string instanced =
-      looking_down(kGrey + light + "ObjectBegin \"o\"\n" + shapes + "ObjectEnd AttributeBegin " + moved +
-                       "ObjectInstance \"o\" AttributeEnd",
-                   1, 32);
+      plane_from_above(kGrey + light + "ObjectBegin \"o\"\n" + shapes + "ObjectEnd AttributeBegin " + moved +
+                           "ObjectInstance \"o\" AttributeEnd",
+                       1, 32);
   const Film a = render_text(direct), b = render_text(instanced);
   int differing = 0;
   for (int y = 0; y < 32; ++y)
@@ -295,7 +297,7 @@ Shape "trianglemesh" "point3 P" [-.9 -.9 0  0 -.8 .1  -.5 0 .2] "normal N" [0 0 
 }
 
 TEST(Path, TheSameBitsOnAnyNumberOfThreads) {
-  const std::string scene = looking_down(
+  const std::string scene = plane_from_above(
       kGrey + kPlane +
           R"(Material "leaf_simplified" "string tablemethod" "solve" Translate 0 0 .3 Shape "disk" "float radius" .5
 LightSource "infinite" "spectrum L" "stdillum-D65")",
@@ -308,7 +310,7 @@ LightSource "infinite" "spectrum L" "stdillum-D65")",
 }
 
 TEST(Path, HeroAndFixedWavelengthsAgreeOnGrey) {
-  const std::string scene = looking_down(
+  const std::string scene = plane_from_above(
       kGrey + kPlane + R"(LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "spectrum L" "stdillum-D65")",
       0.01, 16);
   const Film film = render_text(scene, {.samples = 256, .wavelengths = "hero"});
@@ -330,14 +332,14 @@ TEST(Path, CountsHowPathsEnd) {
   const RenderSettings settings{.statistics = &s};
   constexpr uint64_t kPaths = 4 * 4 * 16;
 
-  render_text(looking_down(light), settings);
+  render_text(plane_from_above(light), settings);
   EXPECT_EQ(s.ends.escaped[0], kPaths);
-  render_text(looking_down(light + black + kPlane), settings);
+  render_text(plane_from_above(light + black + kPlane), settings);
   EXPECT_EQ(s.ends.absorbed[0], kPaths);
-  render_text(looking_down(light + kGrey + kPlane), settings);
+  render_text(plane_from_above(light + kGrey + kPlane), settings);
   EXPECT_EQ(s.ends.escaped[1], kPaths);
   // Transmitted light is absorbed by the black plane beneath the sheet, which is wide but finite.
-  render_text(looking_down(light + half + kPlane + below + black + kPlane), settings);
+  render_text(plane_from_above(light + half + kPlane + below + black + kPlane), settings);
   EXPECT_EQ(s.ends.escaped[1] + s.ends.absorbed[1], kPaths);
   EXPECT_NEAR(double(s.ends.absorbed[1]), kPaths / 2.0, kSigmas * std::sqrt(kPaths / 4.0));
 }

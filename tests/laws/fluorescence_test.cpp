@@ -39,9 +39,6 @@ struct Planted : Fluorescence {
   double excitation(double) const override { return density; }
 };
 
-/// The examinations below raise a false alarm at less than one in 50,000 changes of the seed.
-constexpr double kFalseAlarmRate = 1e-6;
-
 std::string failures(const Fluorescence& fluorescence) {
   Findings found;
   check_fluorescence(fluorescence, "planted", {}, found);

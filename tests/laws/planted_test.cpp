@@ -11,10 +11,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Over a whole examination of one BSDF. With some 40 of them below, this file's tests raise a false alarm at less than
-/// one in 20,000 changes of the seed.
-constexpr double kFalseAlarmRate = 1e-6;
-
 Findings findings(const MaterialInfo& info, const Claims& claims = {},
                   const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455}),
                   const ExaminationEffort& effort = {}) {

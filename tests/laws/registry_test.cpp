@@ -16,10 +16,6 @@
 namespace frond::test {
 namespace {
 
-/// False-alarm rate of each test here: with a handful of materials and five tests each, a new seed raises a false alarm
-/// in this file less than once in 10,000 times.
-constexpr double kFalseAlarmRate = 1e-6;
-
 const MaterialInfo& material(std::string_view name) {
   return PluginTable<MaterialInfo>("material", builtin_materials()).get(name, {});
 }

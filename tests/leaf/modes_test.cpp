@@ -17,15 +17,13 @@ namespace {
 
 using namespace frond::test;
 
-constexpr double kPi = std::numbers::pi;
-
 /// By the midpoint rule, which is exact but for the cut's edge.
 double mode_by_sum(double exponent, double mu_axis, double mu, int m) {
   constexpr int kSteps = 5000;
   const double a = mu_axis * mu, b = std::sqrt((1 - mu_axis * mu_axis) * (1 - mu * mu));
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
-    const double phi = kPi * (i + 0.5) / kSteps;
+    const double phi = std::numbers::pi * (i + 0.5) / kSteps;
     if (const double c = a + b * std::cos(phi); c > 0) sum += std::pow(c, exponent) * std::cos(m * phi);
   }
   return sum / kSteps;
@@ -48,7 +46,7 @@ TEST(AzimuthModes, AreTheCosineTransformOfTheLobe) {
   }
 }
 
-double radians(double degrees) { return degrees * kPi / 180; }
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 double f_of(const LeafModes& modes, const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, size_t i, size_t o) {
   const size_t count = modes.sines().size();
@@ -75,7 +73,7 @@ void expect_energy_of_solver(const Tissue& tissue, double tolerance) {
       for (const bool crosses : {false, true})
         for (size_t k = 0; k < rule.size(); ++k) {
           const double mu = rule[k].x * rule[k].x;
-          share[crosses] += rule[k].weight * 2 * rule[k].x * 2 * kPi * mu *
+          share[crosses] += rule[k].weight * 2 * rule[k].x * 2 * std::numbers::pi * mu *
                             interface_transmittance(tissue, std::cos(radians(theta[i])), mu) *
                             modes.series(below, crosses)[0][i * sines.size() + theta.size() + k];
         }
@@ -107,7 +105,8 @@ Vec3d direction(double theta_deg, double phi, bool below) {
 TEST(LeafModes, AreTheWalksOwnF) {
   const int samples = slow_tests() ? 1000000 : 16000;
   const std::array theta{30.0, 60.0, 80.0};
-  const std::vector<double> phis = slow_tests() ? std::vector{0.0, 0.7, 1.3, 2.2, kPi} : std::vector{0.0, 1.3, kPi};
+  const std::vector<double> phis =
+      slow_tests() ? std::vector{0.0, 0.7, 1.3, 2.2, std::numbers::pi} : std::vector{0.0, 1.3, std::numbers::pi};
   std::vector<double> sines;
   for (const double degrees : theta) sines.push_back(std::sin(radians(degrees)));
   std::vector<double> scores;
@@ -122,7 +121,8 @@ TEST(LeafModes, AreTheWalksOwnF) {
           for (const double phi : phis)
             for (const bool below : {false, true})
               for (const bool crosses : {false, true}) {
-                const Vec3d wo = direction(theta[i], kPi, below), wi = direction(theta[o], phi, below != crosses);
+                const Vec3d wo = direction(theta[i], std::numbers::pi, below),
+                            wi = direction(theta[o], phi, below != crosses);
                 Estimate walks;
                 for (int k = 0; k < samples; ++k)
                   walks.add(estimate_subsurface_f(tissue, wo, wi, Absorption::weighted, rng));
@@ -153,11 +153,13 @@ Comparison compare(const Tissue& tissue, double tolerance, int nodes, int finer_
   Comparison result;
   for (size_t i = 0; i < theta.size(); ++i)
     for (size_t o = 0; o < theta.size(); ++o)
-      for (double phi = 0; phi < 3.2; phi += kPi / 8)
+      for (double phi = 0; phi < 3.2; phi += std::numbers::pi / 8)
         for (const bool below : {false, true})
           for (const bool crosses : {false, true}) {
-            const Vec3d wo = direction(theta[i], kPi, below), wi = direction(theta[o], phi, below != crosses);
-            const double a = kPi * f_of(modes, tissue, wo, wi, i, o), b = kPi * f_of(finer, tissue, wo, wi, i, o);
+            const Vec3d wo = direction(theta[i], std::numbers::pi, below),
+                        wi = direction(theta[o], phi, below != crosses);
+            const double a = std::numbers::pi * f_of(modes, tissue, wo, wi, i, o),
+                         b = std::numbers::pi * f_of(finer, tissue, wo, wi, i, o);
             result.difference = std::max(result.difference, std::abs(a - b));
             result.largest = std::max(result.largest, b);
           }

@@ -26,7 +26,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kPiD = std::numbers::pi, kRadians = kPiD / 180;
+constexpr double kRadians = std::numbers::pi / 180;
 constexpr const char* kBands = "bands,wavelengths=400,550,1100,2000";
 constexpr double kSunRadius = 0.2666 * kRadians;
 
@@ -65,8 +65,9 @@ template <class F>
 double over_hemisphere(const F& f, int rings = 400, int sectors = 360) {
   double sum = 0;
   for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < sectors; ++j) sum += f(direction(std::acos((i + 0.5) / rings), 2 * kPiD * (j + 0.5) / sectors));
-  return sum * 2 * kPiD / (rings * sectors);
+    for (int j = 0; j < sectors; ++j)
+      sum += f(direction(std::acos((i + 0.5) / rings), 2 * std::numbers::pi * (j + 0.5) / sectors));
+  return sum * 2 * std::numbers::pi / (rings * sectors);
 }
 
 double relative(const SkyShape& shape, const Vec3& d, const Vec3& sun) {
@@ -128,8 +129,8 @@ TEST(SkyLight, TheSunsDiscHasTheDirectIrradianceAndItsTrueSize) {
   EXPECT_GT(at(0.999 * radius), 100 * at(1.001 * radius));
   EXPECT_NEAR(at(0.5 * radius), at(0), 1e-5f * at(0));
   const auto i = size_t(std::ranges::find(e.nm, 550) - e.nm.begin());
-  EXPECT_NEAR((double(at(0)) - double(at(1.001 * radius))) * kPiD * std::pow(std::sin(radius), 2), e.direct_normal[i],
-              1e-4 * e.direct_normal[i]);
+  EXPECT_NEAR((double(at(0)) - double(at(1.001 * radius))) * std::numbers::pi * std::pow(std::sin(radius), 2),
+              e.direct_normal[i], 1e-4 * e.direct_normal[i]);
 }
 
 /// Compares the numbers of samples in bins of the sphere with the integrals of the density: chi-square over 8 x 8 bins
@@ -140,17 +141,17 @@ void expect_density(const Sky& sky, const Sample& sample, const Pdf& pdf) {
   const Vec3 sun = *sky.light().sun();
   const auto bin = [&](const Vec3& d) {
     if (length(d - sun) < float(kSunRadius)) return kBins * kBins;
-    const double turn = std::atan2(double(d.y), double(d.x)) / (2 * kPiD) + 0.5;
+    const double turn = std::atan2(double(d.y), double(d.x)) / (2 * std::numbers::pi) + 0.5;
     return int(double(d.z) * kBins) * kBins + std::min(int(turn * kBins), kBins - 1);
   };
   std::vector<double> expected(kBins * kBins + 1), found(kBins * kBins + 1);
   over_hemisphere(
       [&](const Vec3& d) {
-        if (bin(d) < kBins * kBins) expected[size_t(bin(d))] += double(pdf(d)) * 2 * kPiD / 4e6;
+        if (bin(d) < kBins * kBins) expected[size_t(bin(d))] += double(pdf(d)) * 2 * std::numbers::pi / 4e6;
         return 0;
       },
       2000, 2000);
-  expected.back() = double(pdf(sun)) * 2 * kPiD * (1 - std::cos(kSunRadius));
+  expected.back() = double(pdf(sun)) * 2 * std::numbers::pi * (1 - std::cos(kSunRadius));
   double sum = 0;
   for (const double share : expected) sum += share;
   EXPECT_NEAR(sum, 1, 2e-3);
@@ -234,7 +235,7 @@ TEST(SkyLight, BelowTheHorizonIsALambertianGroundOfTheAlbedo) {
   const Sky sky("\"float albedo\" 0.4 \"float scale\" 2");
   const ClearSkyIrradiance e = spectrl2({.albedo = 0.4});
   const auto i = size_t(std::ranges::find(e.nm, 550) - e.nm.begin());
-  const double expected = 2 * 0.4 / kPiD * (e.direct_normal[i] * std::cos(30 * kRadians) + e.diffuse[i]);
+  const double expected = 2 * 0.4 / std::numbers::pi * (e.direct_normal[i] * std::cos(30 * kRadians) + e.diffuse[i]);
   for (const Vec3& d : {Vec3{0, 0, -1}, Vec3{0.6f, 0, -0.8f}})
     EXPECT_NEAR(double(sky.radiance(d)[1]), expected, 1e-4 * expected);
 }

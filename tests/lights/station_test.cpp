@@ -21,7 +21,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kPiD = std::numbers::pi, kSine = 0.5;  // of an elevation of 30 degrees
+constexpr double kSine = 0.5;  // of an elevation of 30 degrees
 
 /// Warnings of a sky, and the energy of its light on a horizontal plane from 300 to 2500 nm, W/m^2.
 struct Energy {
@@ -69,21 +69,22 @@ struct Energy {
     double sum = 0;
     for (int i = 0; i < kRings; ++i)
       for (int j = 0; j < kSectors; ++j) {
-        const double z = std::sqrt((i + 0.5) / kRings), r = std::sqrt(1 - z * z), phi = 2 * kPiD * (j + 0.5) / kSectors;
+        const double z = std::sqrt((i + 0.5) / kRings), r = std::sqrt(1 - z * z),
+                     phi = 2 * std::numbers::pi * (j + 0.5) / kSectors;
         sum += double(light.radiance({}, to_float(Vec3d{r * std::cos(phi), r * std::sin(phi), z}), lambda)[0]);
       }
-    return kPiD * sum / (kRings * kSectors);
+    return std::numbers::pi * sum / (kRings * kSectors);
   }
   /// Of the disc: its radiance above that of the sky beside it.
   static double sun_irradiance(const EnvironmentLight& light, const SampledWavelengths& lambda) {
     const Vec3 sun = *light.sun();
-    const double radius = 0.2666 * kPiD / 180 * std::sqrt(sun_distance_factor(172));
+    const double radius = 0.2666 * std::numbers::pi / 180 * std::sqrt(sun_distance_factor(172));
     const Frame frame = Frame::around(sun);
     const auto at = [&](double angle) {
       return double(
           light.radiance({}, frame.to_world(to_float(Vec3d{std::sin(angle), 0, std::cos(angle)})), lambda)[0]);
     };
-    return (at(0) - at(1.01 * radius)) * kPiD * std::pow(std::sin(radius), 2) * kSine;
+    return (at(0) - at(1.01 * radius)) * std::numbers::pi * std::pow(std::sin(radius), 2) * kSine;
   }
 };
 

@@ -8,6 +8,7 @@
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/registry.h"
 #include "tests/support/bind.h"
+#include "tests/support/parsed_params.h"
 #include "tests/support/ramp.h"
 
 namespace frond::test {
@@ -37,19 +38,6 @@ inline const MaterialInfo& material_info(std::string_view name) {
 inline std::shared_ptr<Material> Resolver::material(const std::string& name, const Location& where) {
   const MaterialInfo& info = material_info(name);
   return info.make(Params(info, {name, where, {}}, *this));
-}
-
-inline ParsedParam words(std::string name, std::vector<std::string> values) {
-  return {"string", std::move(name), {}, {}, std::move(values)};
-}
-inline ParsedParam texture(std::string name, std::vector<std::string> textures) {
-  return {"texture", std::move(name), {}, {}, std::move(textures)};
-}
-inline ParsedParam flag(std::string name, bool value) {
-  return {"bool", std::move(name), {}, {}, std::vector<bool>{value}};
-}
-inline ParsedParam level(std::string name, double value) {
-  return {"spectrum", std::move(name), {}, {}, std::vector<double>{300, value, 3000, value}};
 }
 
 /// A material made ready for a render, and its BSDF at a flat hit.

@@ -26,7 +26,7 @@ class KeptLog final : public Log {
   mutable std::vector<std::string> infos, warnings;
 };
 
-SceneDescription parse_world(const std::string& text, const Log& log = silent_log()) {
+SceneDescription parse_world_of_format(const std::string& text, const Log& log = silent_log()) {
   return parse_scene_text("WorldBegin\n" + text, "s", log);
 }
 
@@ -108,7 +108,8 @@ TEST(PbrtFormat, FilesAreFoundWithBackslashes) {
 
 TEST(PbrtFormat, TransformBeginSavesTheMaterialToo) {
   const KeptLog log;
-  const auto scene = parse_world("TransformBegin Material \"mix\" Translate 1 0 0 TransformEnd Shape \"disk\"", log);
+  const auto scene =
+      parse_world_of_format("TransformBegin Material \"mix\" Translate 1 0 0 TransformEnd Shape \"disk\"", log);
   EXPECT_EQ(scene.shapes.at(0).material, 0u);
   EXPECT_EQ(scene.shapes.at(0).world_from_object, Transform());
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("s:2:1: TransformBegin saves all")));
@@ -118,10 +119,11 @@ TEST(PbrtFormat, WhatCannotBeInvertedIsLeftOut) {
   for (const char* flat :
        {"Scale 1 0 1", "Transform [ 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 ]", "Scale 1e-30 1 1 Scale 1e-30 1 1"}) {
     const KeptLog log;
-    const auto scene = parse_world(std::string("ObjectBegin \"o\" Shape \"disk\" ObjectEnd AttributeBegin\n") + flat +
-                                       "\nShape \"disk\" LightSource \"point\" ObjectInstance \"o\" Scale 2 2 2\n"
-                                       "AttributeEnd Shape \"sphere\"",
-                                   log);
+    const auto scene =
+        parse_world_of_format(std::string("ObjectBegin \"o\" Shape \"disk\" ObjectEnd AttributeBegin\n") + flat +
+                                  "\nShape \"disk\" LightSource \"point\" ObjectInstance \"o\" Scale 2 2 2\n"
+                                  "AttributeEnd Shape \"sphere\"",
+                              log);
     EXPECT_EQ(scene.shapes.size(), 1u) << flat;
     EXPECT_THAT(scene.lights, IsEmpty());
     EXPECT_THAT(scene.instances.objects, IsEmpty());
@@ -138,10 +140,10 @@ TEST(PbrtFormat, WhatPbrtOnlyWarnsOfIsAWarning) {
       {"Shape \"disk\" \"float radius\" 1 \"float radius\" 2", "s:2:31: parameter \"radius\" is given twice"}};
   for (const auto& [text, warning] : scenes) {
     const KeptLog log;
-    parse_world(text, log);
+    parse_world_of_format(text, log);
     EXPECT_THAT(log.warnings, ElementsAre(HasSubstr(warning))) << text;
   }
-  const auto scene = parse_world("Shape \"disk\" \"float radius\" 1 \"float radius\" 2");
+  const auto scene = parse_world_of_format("Shape \"disk\" \"float radius\" 1 \"float radius\" 2");
   ASSERT_EQ(scene.shapes.at(0).plugin.params.size(), 1u);
   EXPECT_EQ(std::get<std::vector<double>>(scene.shapes[0].plugin.params[0].values)[0], 2);
 }
@@ -149,7 +151,7 @@ TEST(PbrtFormat, WhatPbrtOnlyWarnsOfIsAWarning) {
 TEST(PbrtFormat, AllErrorsAreToldAndNoneThatFollows) {
   Problems problems;
   problems.attempt([] {
-    parse_world(
+    parse_world_of_format(
         "Shape sphere\nTranslate 1 2\nMakeNamedMaterial \"m\" \"flot x\" 1\nNamedMaterial \"m\" Shape \"disk\"\n"
         "Texture \"t\" \"color\" \"constant\"\nShape \"disk\" \"string a\" \"b\nFoo 1 2 3\nObjectInstance \"o\"");
   });
@@ -203,8 +205,8 @@ TEST(PbrtFormat, FilesAreRelativeToTheMainFileFirst) {
 }
 
 TEST(PbrtFormat, CommentsEndWithALineOfAnyKind) {
-  EXPECT_EQ(parse_world("# one\rShape \"disk\"\r# two\r\nShape \"disk\"").shapes.size(), 2u);
-  EXPECT_THAT(error_of([] { parse_world("# one\r\r Foo"); }), HasSubstr("s:4:2: unknown directive Foo"));
+  EXPECT_EQ(parse_world_of_format("# one\rShape \"disk\"\r# two\r\nShape \"disk\"").shapes.size(), 2u);
+  EXPECT_THAT(error_of([] { parse_world_of_format("# one\r\r Foo"); }), HasSubstr("s:4:2: unknown directive Foo"));
 }
 
 TEST(PbrtFormat, AMissingIncludeIsTheOnlyError) {
@@ -265,7 +267,9 @@ TEST(PbrtFormat, ActiveTransformMovesShapesAndInstances) {
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("a light does not move")));
 }
 
-TEST(PbrtFormat, OptionsMayStandInTheWorld) { EXPECT_EQ(parse_world("Option \"integer seed\" 3").options.size(), 1u); }
+TEST(PbrtFormat, OptionsMayStandInTheWorld) {
+  EXPECT_EQ(parse_world_of_format("Option \"integer seed\" 3").options.size(), 1u);
+}
 
 /// A scene after the replacement of pbrt's plug-ins, and its messages.
 struct Answer {

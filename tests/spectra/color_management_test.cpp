@@ -16,10 +16,10 @@
 namespace frond {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// Every corner of the cube, greys, and values out of range.
 std::vector<float> colors() {
@@ -71,7 +71,7 @@ std::string user_config(std::string_view roles) {
       roles);
 }
 
-class ColorManagement : public testing::Test {
+class ColorManagement : public ::testing::Test {
  protected:
   ColorManagement() { unsetenv("OCIO"); }
 };

@@ -12,10 +12,10 @@ namespace {
 
 using testing::HasSubstr;
 
-const Location kHere{std::make_shared<const std::string>("scene.pbrt"), 3, 7};
+const Location kTableHere{std::make_shared<const std::string>("scene.pbrt"), 3, 7};
 
 std::string error_of_table(const std::vector<double>& pairs) {
-  return error_of([&] { make_tabulated(pairs, kHere); });
+  return error_of([&] { make_tabulated(pairs, kTableHere); });
 }
 
 TEST(Tabulated, IsLinearBetweenUnevenPoints) {
@@ -28,7 +28,7 @@ TEST(Tabulated, IsLinearBetweenUnevenPoints) {
 }
 
 TEST(Tabulated, HoldsTheNearestEndOutsideItsRange) {
-  const auto s = make_tabulated(std::vector<double>{400, 1, 500, 2}, kHere);
+  const auto s = make_tabulated(std::vector<double>{400, 1, 500, 2}, kTableHere);
   EXPECT_EQ(s->range_nm().min, 400);
   EXPECT_EQ(s->range_nm().max, 500);
   EXPECT_EQ(s->at(10), 1);
@@ -47,12 +47,12 @@ TEST(Tabulated, EveryMakeOfTheSameTableAgrees) {
 }
 
 TEST(Tabulated, FractionsOfANanometreAreKept) {
-  const auto s = make_tabulated(std::vector<double>{400.5, 1, 400.75, 9, 401, 1}, kHere);
+  const auto s = make_tabulated(std::vector<double>{400.5, 1, 400.75, 9, 401, 1}, kTableHere);
   EXPECT_EQ(s->at(400.75f), 9);
 }
 
 TEST(Tabulated, EqualValuesAreConstantWithinTheirRange) {
-  const auto s = make_tabulated(std::vector<double>{360, 0.5, 2500, 0.5}, kHere);
+  const auto s = make_tabulated(std::vector<double>{360, 0.5, 2500, 0.5}, kTableHere);
   EXPECT_NE(dynamic_cast<const ConstantSpectrum*>(s.get()), nullptr);
   EXPECT_EQ(s->range_nm().max, 2500);
 }
@@ -87,14 +87,14 @@ TEST(Blackbody, FollowsPlanckBeyondTheVisible) {
 
 TEST(Blackbody, ImpossibleTemperaturesAreRefused) {
   for (const double kelvin : {0.0, -5.0, double(NAN), double(INFINITY)})
-    EXPECT_THAT(error_of([&] { BlackbodySpectrum s(kelvin, kHere); }), HasSubstr("scene.pbrt:3:7: a blackbody's"));
+    EXPECT_THAT(error_of([&] { BlackbodySpectrum s(kelvin, kTableHere); }), HasSubstr("scene.pbrt:3:7: a blackbody's"));
 }
 
 /// Integrals of ASTM G173-03 from 300 to 2500 nm, W/m^2: most of the solar constant, and most of what the standard
 /// calls 1000.37 and 900.14 W/m^2 from 280 to 4000 nm.
 TEST(Named, TheSunHasThePowerThatTheStandardSays) {
   const auto power = [](std::string_view name) {
-    const SpectrumPtr s = named_spectrum(name, kHere);
+    const SpectrumPtr s = named_spectrum(name, kTableHere);
     double sum = 0;
     for (int nm = 300; nm < 2500; ++nm) sum += (double(s->at(float(nm))) + double(s->at(float(nm + 1)))) / 2;
     return sum;
@@ -102,22 +102,22 @@ TEST(Named, TheSunHasThePowerThatTheStandardSays) {
   EXPECT_NEAR(power("solar-am1.5-global"), 992.6, 0.5);
   EXPECT_NEAR(power("solar-am1.5-direct"), 892.3, 0.5);
   EXPECT_NEAR(power("solar-am0"), 1307, 1);
-  EXPECT_EQ(named_spectrum("solar-am0", kHere)->range_nm().max, 2500);
-  EXPECT_NEAR(named_spectrum("solar-am1.5-direct", kHere)->at(2500), 0.0070328, 1e-7);
+  EXPECT_EQ(named_spectrum("solar-am0", kTableHere)->range_nm().max, 2500);
+  EXPECT_NEAR(named_spectrum("solar-am1.5-direct", kTableHere)->at(2500), 0.0070328, 1e-7);
 }
 
 TEST(Named, IlluminantsAreThereAsPublishedAndOthersAreNamed) {
   for (const std::string_view name :
        {"stdillum-A", "stdillum-D50", "stdillum-D55", "stdillum-D65", "stdillum-D75", "stdillum-E", "illum-acesD60"})
-    EXPECT_EQ(named_spectrum(name, kHere)->at(560), 100) << name;
-  EXPECT_NE(named_spectrum("stdillum-A", kHere)->at(600), named_spectrum("stdillum-D65", kHere)->at(600));
-  EXPECT_THAT(error_of([] { named_spectrum("stdilum-D65", kHere); }), HasSubstr("did you mean \"stdillum-D65\"?"));
+    EXPECT_EQ(named_spectrum(name, kTableHere)->at(560), 100) << name;
+  EXPECT_NE(named_spectrum("stdillum-A", kTableHere)->at(600), named_spectrum("stdillum-D65", kTableHere)->at(600));
+  EXPECT_THAT(error_of([] { named_spectrum("stdilum-D65", kTableHere); }), HasSubstr("did you mean \"stdillum-D65\"?"));
 }
 
 /// Chromaticities that CIE 15:2004 publishes, tables T.3 and T.8, and of the white of ACES (SMPTE ST 2065-1).
 TEST(Named, IlluminantsHaveTheirChromaticities) {
   const auto expect = [](std::string_view name, double x, double y, double tolerance) {
-    const Triple xyz = to_xyz(*named_spectrum(name, kHere));
+    const Triple xyz = to_xyz(*named_spectrum(name, kTableHere));
     const double sum = xyz[0] + xyz[1] + xyz[2];
     EXPECT_NEAR(xyz[0] / sum, x, tolerance) << name;
     EXPECT_NEAR(xyz[1] / sum, y, tolerance) << name;
@@ -136,7 +136,7 @@ TEST(Named, IlluminantsHaveTheirChromaticities) {
 /// Catalogues' n_d, at the yellow line of helium, and Abbe numbers, which the line C and F decide.
 TEST(Named, GlassesRefractAsCataloguesSay) {
   const auto expect = [](std::string_view name, double n_d, double abbe) {
-    const SpectrumPtr n = named_spectrum(name, kHere);
+    const SpectrumPtr n = named_spectrum(name, kTableHere);
     const auto at = [&](float nm) { return double(n->at(nm)); };
     EXPECT_NEAR(at(587.5618f), n_d, 2e-5) << name;
     EXPECT_NEAR((at(587.5618f) - 1) / (at(486.1327f) - at(656.2725f)), abbe, 0.02) << name;
@@ -149,15 +149,15 @@ TEST(Named, GlassesRefractAsCataloguesSay) {
   expect("glass-SF10", 1.72828, 28.53);
   expect("glass-SF11", 1.78472, 25.68);
   for (const char* number : {"5", "10", "11"})
-    EXPECT_EQ(named_spectrum(std::string("glass-F") + number, kHere),
-              named_spectrum(std::string("glass-SF") + number, kHere));
+    EXPECT_EQ(named_spectrum(std::string("glass-F") + number, kTableHere),
+              named_spectrum(std::string("glass-SF") + number, kTableHere));
 }
 
 /// Reflectance at normal incidence, ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2): gold is dark in the blue, silver nowhere.
 TEST(Named, MetalsHaveTheirColours) {
   const auto reflectance = [](const std::string& metal, float nm) {
-    const double n = double(named_spectrum("metal-" + metal + "-eta", kHere)->at(nm));
-    const double k = double(named_spectrum("metal-" + metal + "-k", kHere)->at(nm));
+    const double n = double(named_spectrum("metal-" + metal + "-eta", kTableHere)->at(nm));
+    const double k = double(named_spectrum("metal-" + metal + "-k", kTableHere)->at(nm));
     return ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
   };
   EXPECT_NEAR(reflectance("Au", 450), 0.39, 0.02);
@@ -167,13 +167,13 @@ TEST(Named, MetalsHaveTheirColours) {
   EXPECT_NEAR(reflectance("Al", 550), 0.92, 0.02);
   EXPECT_GT(reflectance("Ag", 450), 0.9);
   EXPECT_GT(reflectance("CuZn", 650), reflectance("CuZn", 450));
-  EXPECT_EQ(named_spectrum("metal-MgO-k", kHere)->at(550), 0);
-  EXPECT_NEAR(double(named_spectrum("metal-TiO2-eta", kHere)->at(600)), 2.9, 0.2);
+  EXPECT_EQ(named_spectrum("metal-MgO-k", kTableHere)->at(550), 0);
+  EXPECT_NEAR(double(named_spectrum("metal-TiO2-eta", kTableHere)->at(600)), 2.9, 0.2);
 }
 
 TEST(Named, AllReachOverTheVisible) {
   for (const std::string_view name : spectrum_names()) {
-    const Interval range = named_spectrum(name, kHere)->range_nm();
+    const Interval range = named_spectrum(name, kTableHere)->range_nm();
     EXPECT_LE(range.min, kCieRange_nm.min) << name;
     EXPECT_GE(range.max, kCieRange_nm.max) << name;
   }
