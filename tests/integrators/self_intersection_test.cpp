@@ -209,7 +209,7 @@ Tally leave_random_planes(unsigned first, unsigned count) {
 }
 
 TEST(SelfIntersection, RaysLeaveRandomPlanes) {
-  const Tally tally = leave_random_planes(1, slow_tests() ? 20000 : 500);
+  const Tally tally = leave_random_planes(1, slow_tests() ? 20000 : 200);
   EXPECT_GT(tally.rays, 100000u);
   EXPECT_EQ(tally.again, 0u) << "of " << tally.rays;
 }
@@ -217,7 +217,7 @@ TEST(SelfIntersection, RaysLeaveRandomPlanes) {
 /// Points of thin boxes far from the origin round to the other side of a wall beside an edge: 0.2 % of the rays are
 /// lost, whatever their offset. A wall that rays left by their own error would lose half of them.
 TEST(SelfIntersection, RaysStayInRandomBoxes) {
-  const Tally tally = stay_in_random_boxes(1, slow_tests() ? 20000 : 500);
+  const Tally tally = stay_in_random_boxes(1, slow_tests() ? 20000 : 200);
   EXPECT_GT(tally.rays, 100000u);
   EXPECT_LT(double(tally.again), 0.004 * double(tally.rays));
 }

@@ -9,6 +9,7 @@
 
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/solve/solver.h"
+#include "tests/support/slow.h"
 
 namespace frond::leaf {
 namespace {
@@ -54,8 +55,10 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
     const std::string name(specimen.name);
     const size_t said = specimen.source.find("RMSE ");
     if (said == std::string_view::npos || specimen.source.find("PROSPECT") != std::string_view::npos) continue;
-    ++fitted;
     const std::string species = name.substr(0, name.find('-'));
+    if (!slow_tests() && species != "lettuce" && species != "grape" && species != "soybean")
+      continue;  // one of each file
+    ++fitted;
     const bool is_of_davis = species == "grape" || species == "toyon";
     const auto measurements = read_measured_spectra(folder + (species == "soybean" ? "lopex93_soybean.csv"
                                                               : is_of_davis        ? "davis_leaves.csv"
@@ -64,7 +67,7 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
                                   .measurements;
     EXPECT_NEAR(rmse(specimen, measurements), std::stod(std::string(specimen.source.substr(said + 5))), 2e-4) << name;
   }
-  EXPECT_EQ(fitted, 7);
+  EXPECT_EQ(fitted, slow_tests() ? 7 : 3);
 }
 
 }  // namespace
