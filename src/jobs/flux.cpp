@@ -425,6 +425,7 @@ Result measure_scene(const JobRun& run, const std::function<SceneDescription()>&
   warn_of_end(run, measurement);
   if (has_organs) {
     warn_of_unmet_organs(run, measurement);
+    if (request.energy) measured->energy->sunlit_organs = meter.sunlit_organs(run.session().pool());
     const InstanceErrors errors = instance_errors(measurement, photons);
     report_instance_errors(run, measurement, errors);
     result.facts.push_back({"instance_error_median", errors.median});

@@ -32,10 +32,11 @@ struct IncidentBand {
   Parts photons;  ///< umol/(m^2 s)
 };
 
-/// Light that an organ absorbs in a band, as shares of all incident light.
+/// Light that an organ absorbs in a band, and that falls on it on either side, as shares of all incident light.
 struct OrganShare {
   MeanError energy, direct;  ///< `direct`: the part of the energy from direct light
   MeanError photons;
+  MeanError incident_energy, incident_photons;
 };
 
 /// Light budget by energy and photons. All vectors are by band.
@@ -54,6 +55,8 @@ struct EnergyBudget {
   OfLeaves leaves, sunlit, shaded;  ///< empty if no material counts as a leaf; sunlit and shaded without a sun
   LeafArea leaf_area{};             ///< in the column of the target
   std::vector<OrganShare> organs;   ///< by organ, then band; empty unless requested
+  /// Sunlit share of the area of each organ: FluxMeter::sunlit_organs.
+  std::vector<MeanError> sunlit_organs = {};
 };
 
 }  // namespace frond

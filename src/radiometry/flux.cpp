@@ -11,6 +11,7 @@
 #include "radiometry/lit_bands.h"
 #include "radiometry/photons.h"
 #include "radiometry/radiometer_scene.h"
+#include "radiometry/ratio_sums.h"
 #include "radiometry/sums_file.h"
 #include "radiometry/trace_blocks.h"
 #include "scene/geometry/shape_emitter.h"
@@ -64,7 +65,17 @@ std::string text_of(const FluxRequest& request) {
 }
 
 /// Channels of an organ in a band, where direct and diffuse light, energy and photons are apart.
-enum OrganChannel : size_t { kOrganDirect, kOrganDiffuse, kOrganPhotons, kOrganChannels };
+enum OrganChannel : size_t {
+  kOrganDirect,
+  kOrganDiffuse,
+  kOrganPhotons,
+  kOrganIncident,
+  kOrganIncidentPhotons,
+  kOrganChannels
+};
+
+/// Factor on incident light in these sums: light that white surfaces return again and again would exceed their range.
+constexpr double kIncidentScale = 0x1p-8;
 
 /// Returns a mean of an organ; its error is NaN if no path was absorbed.
 MeanError organ_mean(const Moment& moment, uint64_t paths) {
@@ -149,8 +160,8 @@ class FluxMeter::Block {
   }
   /// Adds to the sums of organs, which have no block of their own: once the block counts.
   void add_organs() {
-    for (const Absorbed& a : absorbed_) state_.by_organ->add(a.organ, a.channel, a.share);
-    absorbed_ = {};
+    for (const OfOrgan& o : of_organs_) state_.by_organ->add(o.organ, o.channel, o.share);
+    of_organs_ = {};
   }
 
   std::vector<Moment> moments;
@@ -192,10 +203,11 @@ class FluxMeter::Block {
         set_leaving_ray(point.hit, ray.d, ray);
         continue;
       }
+      const uint64_t organ = state_.organs ? state_.organs->number(met) : 0;
       shares_.add(flux_quantity(point.material_id, kIncident), share);
       if (depth++ == 0) shares_.add(flux_quantity(point.material_id, kUncollided), share);
       const SampledSpectrum absorbed = share * SampledSpectrum(1 - scattered.weight.v);
-      shares_.add_absorbed(point.material_id, state_.organs ? state_.organs->number(met) : 0, absorbed);
+      shares_.add_absorbed(point.material_id, organ, share, absorbed);
       if (!state_.is_leaf.empty() && state_.is_leaf[point.material_id]) add_leaf(point.hit, at, share, absorbed);
       share *= scattered.weight;
       lambda.retire_black_lanes(share);
@@ -230,11 +242,13 @@ class FluxMeter::Block {
         moments[q * state_.channels.count() + energy].add(share);
         moments[q * state_.channels.count() + photons].add(share * per_energy);
       }
-      for (const auto& [organ, absorbed] : shares_.absorbed_by_organ()) {
-        const auto share = double(absorbed.v[lane]);
+      for (const FluxShares::OfOrgan& o : shares_.organs()) {
+        const double absorbed = double(o.absorbed.v[lane]), incident = double(o.incident.v[lane]) * kIncidentScale;
         const size_t first = band * kOrganChannels;
-        absorbed_.push_back({organ, first + (is_direct_ ? kOrganDirect : kOrganDiffuse), share});
-        absorbed_.push_back({organ, first + kOrganPhotons, share * per_energy});
+        of_organs_.push_back({o.organ, first + (is_direct_ ? kOrganDirect : kOrganDiffuse), absorbed});
+        of_organs_.push_back({o.organ, first + kOrganPhotons, absorbed * per_energy});
+        of_organs_.push_back({o.organ, first + kOrganIncident, incident});
+        of_organs_.push_back({o.organ, first + kOrganIncidentPhotons, incident * per_energy});
       }
     }
   }
@@ -248,12 +262,12 @@ class FluxMeter::Block {
     }
     for (size_t lane = 0; lane < size_t(lambda.count); ++lane) {
       ++seen[lambda.band[lane]];
-      for (const auto& [organ, share] : shares_.absorbed_by_organ())
-        absorbed_.push_back({organ, lambda.band[lane], double(share.v[lane])});
+      for (const FluxShares::OfOrgan& o : shares_.organs())
+        of_organs_.push_back({o.organ, lambda.band[lane], double(o.absorbed.v[lane])});
     }
   }
 
-  struct Absorbed {
+  struct OfOrgan {
     uint64_t organ;
     size_t channel;
     double share;
@@ -262,7 +276,7 @@ class FluxMeter::Block {
   State& state_;
   Arena arena_;
   FluxShares shares_;
-  std::vector<Absorbed> absorbed_;
+  std::vector<OfOrgan> of_organs_;
   bool is_direct_ = false;  ///< where the path's light came from
 };
 
@@ -340,6 +354,14 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
         for (size_t i = 0; i < s.seen.size(); ++i) s.seen[i] += block.seen[i];
       },
       after_round);
+}
+
+std::vector<MeanError> FluxMeter::sunlit_organs(ThreadPool& pool) const {
+  constexpr size_t kLeast = 4, kMost = 1 << 14;
+  const State& s = *state_;
+  const std::optional<Vec3> sun = direction_to_sun(s.scene().lights());
+  if (!sun) return std::vector<MeanError>(s.organs->size(), kUnknown);
+  return sunlit_shares(s.scene(), *s.organs, *sun, std::clamp(size_t(s.paths) / s.organs->size(), kLeast, kMost), pool);
 }
 
 uint64_t FluxMeter::paths() const { return state_->paths; }
@@ -442,8 +464,13 @@ EnergyBudget FluxMeter::read_energy() const {
   for (size_t cell = 0; cell < s.by_organ->size(); cell += kOrganChannels) {
     const uint64_t paths = s.seen[cell / kOrganChannels % s.bands];
     const Moment direct = s.by_organ->at(cell + kOrganDirect), diffuse = s.by_organ->at(cell + kOrganDiffuse);
+    const auto incident = [&](size_t channel) {
+      const MeanError mean = organ_mean(s.by_organ->at(cell + channel), paths);
+      return MeanError{mean.mean / kIncidentScale, mean.standard_error / kIncidentScale};
+    };
     budget.organs.push_back({organ_mean(direct + diffuse, paths), organ_mean(direct, paths),
-                             organ_mean(s.by_organ->at(cell + kOrganPhotons), paths)});
+                             organ_mean(s.by_organ->at(cell + kOrganPhotons), paths), incident(kOrganIncident),
+                             incident(kOrganIncidentPhotons)});
   }
   return budget;
 }

@@ -79,6 +79,8 @@ class FluxMeter {
   FluxMeasurement read() const;
   /// Returns the organs; nullptr unless requested.
   const Organs* organs() const;
+  /// Returns the sunlit share of the area of each organ, from one point for each path so far; NaN without a sun.
+  std::vector<MeanError> sunlit_organs(ThreadPool& pool) const;
   uint64_t paths() const;  ///< number of paths traced
   /// Writes the accumulators; the file is replaced only when complete. Throws InputError with the system's reason.
   void save(const std::filesystem::path& path) const;

@@ -45,7 +45,7 @@ class FluxShares {
   explicit FluxShares(size_t quantities) : values_(quantities) {}
   void clear() {
     std::ranges::fill(values_, SampledSpectrum());
-    absorbed_.clear();
+    organs_.clear();
   }
   void add(size_t quantity, const SampledSpectrum& share) { values_[quantity] += share; }
   /// Adds light that is absorbed or leaves the scene.
@@ -53,22 +53,27 @@ class FluxShares {
     add(quantity, share);
     add(kTotal, share);
   }
-  /// `organ`: number of the organ that absorbs; 0: none.
-  void add_absorbed(uint32_t material, uint64_t organ, const SampledSpectrum& share) {
+  /// Light that falls on an organ and that it absorbs.
+  struct OfOrgan {
+    uint64_t organ;
+    SampledSpectrum incident, absorbed;
+  };
+  /// `organ`: number of the organ that absorbs, of the incident light; 0: none.
+  void add_absorbed(uint32_t material, uint64_t organ, const SampledSpectrum& incident, const SampledSpectrum& share) {
     add_end(flux_quantity(material, kAbsorbed), share);
     if (organ == 0) return;
-    const auto known = std::ranges::find(absorbed_, organ, &std::pair<uint64_t, SampledSpectrum>::first);
-    if (known == absorbed_.end())
-      absorbed_.emplace_back(organ, share);
+    const auto known = std::ranges::find(organs_, organ, &OfOrgan::organ);
+    if (known == organs_.end())
+      organs_.push_back({organ, incident, share});
     else
-      known->second += share;
+      known->incident += incident, known->absorbed += share;
   }
   const std::vector<SampledSpectrum>& values() const { return values_; }
-  const std::vector<std::pair<uint64_t, SampledSpectrum>>& absorbed_by_organ() const { return absorbed_; }
+  const std::vector<OfOrgan>& organs() const { return organs_; }
 
  private:
   std::vector<SampledSpectrum> values_;
-  std::vector<std::pair<uint64_t, SampledSpectrum>> absorbed_;
+  std::vector<OfOrgan> organs_;
 };
 
 /// Sum and sum of squares over paths.

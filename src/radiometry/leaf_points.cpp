@@ -95,4 +95,45 @@ LeafArea leaf_area(const Scene& scene, const Target& target, std::span<const uin
   return {all.mean(n, surfaces.total()), lit.mean(n, surfaces.total()), shaded.mean(n, surfaces.total())};
 }
 
+/// The share is a ratio of weights; its error is that of a binomial share with half a point more on either side.
+std::vector<MeanError> sunlit_shares(const Scene& scene, const Organs& organs, const Vec3& sun, size_t points,
+                                     ThreadPool& pool) {
+  enum Use : uint64_t { kPoints = 0x6f726761, kShadows };
+  constexpr size_t kBatch = 1 << 16, kBlock = 1024;
+  struct Counted {
+    double all = 0, sunlit = 0, points = 0;
+  };
+  std::vector<Counted> counted(organs.size());
+  std::vector<std::pair<RandomSurfacePoint, uint64_t>> batch;
+  std::vector<uint8_t> sunlit(kBatch);
+  uint64_t first = 0;
+  const auto add_batch = [&] {
+    pool.for_each(int64_t((batch.size() + kBlock - 1) / kBlock), [&](int64_t block, int) {
+      StopPoll poll;
+      for (size_t i = size_t(block) * kBlock; i < std::min(batch.size(), (size_t(block) + 1) * kBlock); ++i) {
+        poll();
+        sunlit[i] = is_sunlit(scene, batch[i].first, sun, hash_key(scene.seed(), uint64_t{kShadows}, first + i));
+      }
+    });
+    for (size_t i = 0; i < batch.size(); ++i) {
+      Counted& one = counted[batch[i].second - 1];
+      const double weight = batch[i].first.weight;
+      one.all += weight, one.sunlit += sunlit[i] ? weight : 0, one.points += weight > 0 ? 1 : 0;
+    }
+    first += batch.size();
+    batch.clear();
+  };
+  organs.draw(points, hash_key(scene.seed(), uint64_t{kPoints}), [&](const RandomSurfacePoint& point, uint64_t of) {
+    batch.emplace_back(point, of);
+    if (batch.size() == kBatch) add_batch();
+  });
+  add_batch();
+  std::vector<MeanError> shares;
+  for (const Counted& one : counted) {
+    const double share = one.sunlit / one.all, near = (share * one.points + 0.5) / (one.points + 1);
+    shares.push_back(one.all > 0 ? MeanError{share, std::sqrt(near * (1 - near) / one.points)} : kUnknown);
+  }
+  return shares;
+}
+
 }  // namespace frond

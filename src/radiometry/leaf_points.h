@@ -6,6 +6,7 @@
 
 #include "instruments/errors/statistics.h"
 #include "radiometry/brf.h"
+#include "radiometry/organs.h"
 #include "render/session.h"
 #include "scene/geometry/surface_points.h"
 
@@ -35,5 +36,10 @@ struct LeafArea {
 /// the sun; nullopt: the sunlit area is unknown, NaN.
 LeafArea leaf_area(const Scene& scene, const Target& target, std::span<const uint8_t> is_leaf,
                    const std::optional<Vec3>& sun, size_t points, ThreadPool& pool);
+
+/// Returns the sunlit share of the area of each organ, measured at this number of points of each. The error of a share
+/// of 0 or 1 is that of half a point; NaN: the organ has no area.
+std::vector<MeanError> sunlit_shares(const Scene& scene, const Organs& organs, const Vec3& sun, size_t points,
+                                     ThreadPool& pool);
 
 }  // namespace frond

@@ -1,9 +1,11 @@
 #include "radiometry/organs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
+#include "core/math/random.h"
 #include "core/stop.h"
 #include "scene/geometry/shape_emitter.h"
 
@@ -90,6 +92,26 @@ GeometryHit hit_of(const Surface& surface, uint32_t primitive, uint64_t instance
 
 }  // namespace
 
+template <class Visit>
+void Organs::visit_primitives(const Visit& visit) const {
+  std::map<std::pair<const Surface*, uint32_t>, ShapePoints> points;  // of analytic shapes
+  StopPoll poll;
+  scene_.geometry().visit_surfaces([&](const Surface& surface, const AffineMap& to_world, uint64_t instance) {
+    const auto* mesh = std::get_if<MeshPtr>(&surface.geometry);
+    for (uint32_t primitive = 0; primitive < primitives_of(surface.geometry); ++primitive) {
+      poll();
+      const uint64_t number_from_1 = number(hit_of(surface, primitive, instance));
+      if (number_from_1 == 0) continue;
+      const auto analytic = [&] {
+        const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
+        return points.try_emplace({&surface, primitive}, shape, primitive).first->second.under(to_world);
+      };
+      visit(surface, to_world, instance, primitive, number_from_1,
+            mesh ? extent_of(**mesh, (*mesh)->triangles[primitive], to_world) : analytic());
+    }
+  });
+}
+
 /// Places are assigned at the first visit of a surface: Geometry visits the surfaces of one object one after another.
 Organs::Organs(const Scene& scene, std::vector<std::string> material_names, OrganKind kind)
     : scene_(scene), material_names_(std::move(material_names)), kind_(kind) {
@@ -117,7 +139,17 @@ Organs::Organs(const Scene& scene, std::vector<std::string> material_names, Orga
   centers_.resize(count), materials_.resize(count, kSeveral);
   if (kind != OrganKind::material) instances_.resize(count);
   std::vector<double> areas(count);
-  add_areas(areas);
+  visit_primitives(
+      [&](const Surface& surface, const AffineMap&, uint64_t instance, uint32_t, uint64_t of, const Extent& extent) {
+        const size_t organ = of - 1;
+        if (areas[organ] == 0)
+          materials_[organ] = surface.material;
+        else if (materials_[organ] != surface.material)
+          materials_[organ] = kSeveral;
+        areas[organ] += extent.area;
+        centers_[organ] += extent.center * extent.area;
+        if (!instances_.empty()) instances_[organ] = instance;
+      });
   for (size_t i = 0; i < count; ++i)
     if (areas[i] > 0) centers_[i] = centers_[i] / areas[i] + scene.origin();
   areas_.assign(areas.begin(), areas.end());
@@ -142,29 +174,23 @@ uint64_t Organs::number(const Surface& surface, uint64_t instance, uint32_t prim
   return first_[instance] + place.first + own + 1;
 }
 
-/// Sums areas, and moments in centers_.
-void Organs::add_areas(std::vector<double>& areas) {
-  std::map<std::pair<const Surface*, uint32_t>, ShapePoints> points;  // of analytic shapes
-  StopPoll poll;
-  scene_.geometry().visit_surfaces([&](const Surface& surface, const AffineMap& to_world, uint64_t instance) {
-    const auto* mesh = std::get_if<MeshPtr>(&surface.geometry);
-    for (uint32_t primitive = 0; primitive < primitives_of(surface.geometry); ++primitive) {
-      poll();
-      const uint64_t number_from_1 = number(hit_of(surface, primitive, instance));
-      if (number_from_1 == 0) continue;
-      const size_t organ = number_from_1 - 1;
-      const auto analytic = [&] {
-        const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
-        return points.try_emplace({&surface, primitive}, shape, primitive).first->second.under(to_world);
-      };
-      const Extent extent = mesh ? extent_of(**mesh, (*mesh)->triangles[primitive], to_world) : analytic();
-      if (areas[organ] == 0)
-        materials_[organ] = surface.material;
-      else if (materials_[organ] != surface.material)
-        materials_[organ] = kSeveral;
-      areas[organ] += extent.area;
-      centers_[organ] += extent.center * extent.area;
-      if (!instances_.empty()) instances_[organ] = instance;
+/// Draws a point wherever the cumulative area of an organ passes a multiple of its share, from a random start.
+void Organs::draw(size_t points, uint64_t key,
+                  const std::function<void(const RandomSurfacePoint& point, uint64_t number)>& visit) const {
+  std::vector<double> passed(size());  // number of points in the area before
+  for (size_t i = 0; i < passed.size(); ++i) passed[i] = RandomStream(hash_key(key, uint64_t(i))).uniform_double();
+  uint64_t index = 0;
+  visit_primitives([&](const Surface& surface, const AffineMap& map, uint64_t, uint32_t primitive, uint64_t number,
+                       const Extent& extent) {
+    double& at = passed[number - 1];
+    const double before = std::floor(at);
+    if (extent.area > 0) at += double(points) * extent.area / double(areas_[number - 1]);
+    if (std::floor(at) == before) return;
+    const ShapeEmitter emitter(surface, {primitive, primitive + 1});
+    for (auto left = int64_t(std::floor(at) - before); left > 0; --left) {
+      RandomStream random(hash_key(key, index++, uint64_t{1}));
+      const float u = random.uniform();
+      visit(surface_point(emitter, {u, random.uniform()}, map), number);
     }
   });
 }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "scene/geometry/surface_points.h"
 #include "scene/scene.h"
 
 namespace frond {
@@ -55,6 +57,11 @@ class Organs {
   /// number of surfaces that are no meshes.
   size_t visit_triangles(const std::function<void(const std::array<Vec3d, 3>& corners, uint64_t number)>& visit) const;
 
+  /// Draws `points` points of each organ, or one more or less, uniformly over its area, one in each of as many equal
+  /// areas; calls visit(point, number). The points depend on `key` alone.
+  void draw(size_t points, uint64_t key,
+            const std::function<void(const RandomSurfacePoint& point, uint64_t number)>& visit) const;
+
  private:
   /// Place of a surface among the organs of its object.
   struct Place {
@@ -64,7 +71,9 @@ class Organs {
   };
   uint64_t number(const Surface& surface, uint64_t instance, uint32_t primitive) const;
   void add_place(const Surface& surface, uint64_t first);
-  void add_areas(std::vector<double>& areas);
+  /// Calls visit(surface, map, instance, primitive, number, area and centre) for each primitive of an organ.
+  template <class Visit>
+  void visit_primitives(const Visit& visit) const;
 
   const Scene& scene_;
   std::vector<std::string> material_names_;

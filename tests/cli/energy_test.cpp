@@ -87,7 +87,9 @@ TEST_F(EnergyJob, OrgansHaveRowsWithNamesAreasAndCentres) {
   EXPECT_EQ(measured({"flux", "--bands", "par", "--by", "mesh", "-q", "--csv", path("organs.csv")}).code, 0);
   EXPECT_THAT(content("organs.csv"),
               ContainsRegex("^mesh,name,material_name,instance,area,x,y,z,par_w_m2,par_w_m2_se,par_direct_w_m2,"
-                            "par_direct_w_m2_se,par_umol_m2_s,par_umol_m2_s_se\n1,soil,soil,0,1,0.5,0.5,0,.*\n"
+                            "par_direct_w_m2_se,par_umol_m2_s,par_umol_m2_s_se,par_incident_w_m2,par_incident_w_m2_se,"
+                            "par_incident_umol_m2_s,par_incident_umol_m2_s_se,sunlit_share,sunlit_share_se\n1,soil,"
+                            "soil,0,1,0.5,0.5,0,.*\n"
                             "2,green,green,0,0.5,0.25,0.5,1,"));
   EXPECT_THAT(content("organs-energy.csv"), HasSubstr("fapar"));
   EXPECT_THAT(content("organs-leaves.csv"), HasSubstr("sunlit"));
@@ -123,13 +125,15 @@ TEST_F(EnergyJob, APlyHasTheLightOfEachFace) {
   const std::string bytes = content("a.ply");
   EXPECT_THAT(bytes, HasSubstr("element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty "
                                "uchar green\nproperty uchar blue\nproperty float quality\nproperty float "
-                               "par_w_m2\nproperty float par_umol_m2_s\nproperty int triangle\nend_header\n"));
+                               "par_w_m2\nproperty float par_umol_m2_s\nproperty float par_incident_w_m2\nproperty "
+                               "float par_incident_umol_m2_s\n"
+                               "property float sunlit_share\nproperty int triangle\nend_header\n"));
   const PlyMesh read = read_ply(path("a.ply"));
   ASSERT_EQ(read.mesh.triangles.size(), 2u);
   EXPECT_EQ(read.mesh.p[4].y, 1);
-  // The last face ends with quality, par_w_m2, par_umol_m2_s and the number of its organ.
+  // The last face ends with these and the number of its organ.
   struct {
-    float quality, w, umol;
+    float quality, w, umol, incident_w, incident_umol, sunlit;
     int32_t organ;
   } last;
   std::memcpy(&last, bytes.data() + bytes.size() - sizeof last, sizeof last);
@@ -146,6 +150,9 @@ TEST_F(EnergyJob, APlyHasTheLightOfEachFace) {
   }
   EXPECT_NEAR(values[8], double(last.w), 1e-5 * values[8]);
   EXPECT_NEAR(values[12], double(last.umol), 1e-5 * values[12]);
+  EXPECT_NEAR(values[14], double(last.incident_w), 1e-5 * values[14]);
+  EXPECT_GT(last.incident_w, last.w);
+  EXPECT_EQ(last.sunlit, 1);
 }
 
 }  // namespace

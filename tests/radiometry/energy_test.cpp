@@ -329,6 +329,61 @@ TEST_F(Energy, OfPlantsThatStandAloneCountsLightThroughTheSides) {
   EXPECT_EQ(through_top[2].mean, 0);
 }
 
+/// Two leaves of 1 x 1 under a sun in the zenith. The upper one, black, shades half of the lower one, Lambertian and
+/// grey, whose reflected light falls on the lower side of the upper one.
+TEST_F(Energy, OfAHalfShadedLeafIsThatOfItsSunlitHalf) {
+  const auto square = [](double x, double z) {
+    return fmt::format(
+        "Shape \"trianglemesh\" \"point3 P\" [{0} 0 {2}  {1} 0 {2}  {1} 1 {2}  {0} 1 {2}] \"integer indices\" [0 1 2  "
+        "0 2 "
+        "3]\n",
+        x, x + 1, z);
+  };
+  const auto leaf = [](const char* name, double r) {
+    return fmt::format(
+        "MakeNamedMaterial \"{0}\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 {1} 2500 "
+        "{1}]\nNamedMaterial \"{0}\" ",
+        name, r);
+  };
+  const std::string world =
+      "LightSource \"distant\" \"point3 from\" [0 0 2] \"point3 to\" [0 0 0] \"spectrum L\" [300 1 2500 1]\n" +
+      leaf("lower", 0.5) + square(0, 0) + leaf("upper", 0) + square(0.5, 0.1);
+  Session session(silent_log(), {2, {}, {}});
+  for (const OrganKind kind : {OrganKind::mesh, OrganKind::triangle}) {
+    FluxMeter meter(
+        session, parse_scene_text("WorldBegin\n" + world, "t", silent_log()),
+        {.wavelengths = "bands,ranges=400,700,names=par", .organs = kind, .energy = true, .leaves = {"lower"}});
+    meter.trace(1 << 16, session.pool());
+    const FluxMeasurement m = meter.read();
+    const auto sunlit = meter.sunlit_organs(session.pool());
+    const auto& organs = m.energy->organs;
+    const auto expect = [](const MeanError& share, double expected) {
+      EXPECT_NEAR(share.mean, expected, kZ * share.standard_error + 1e-4);
+    };
+    if (kind == OrganKind::triangle) {  // the diagonal from (0, 0) to (1, 1) divides the sunlit half
+      ASSERT_EQ(sunlit.size(), 4u);
+      expect(sunlit[0], 0.25);
+      expect(sunlit[1], 0.75);
+      continue;
+    }
+    ASSERT_EQ(organs.size(), 2u);
+    expect(sunlit[0], 0.5);
+    expect(sunlit[1], 1);
+    EXPECT_LT(sunlit[0].standard_error, 0.005);
+    // Of the scene's light on 1.5 x 1, a third falls on the lower leaf, in the sun.
+    expect(organs[0].incident_energy, 1.0 / 3);
+    expect(organs[0].incident_photons, 1.0 / 3);
+    expect(organs[0].energy, 0.5 / 3);
+    const MeanError back = {organs[1].incident_energy.mean - 2.0 / 3, organs[1].incident_energy.standard_error};
+    EXPECT_GT(back.mean, 5 * back.standard_error);
+    EXPECT_LT(back.mean, 0.5 / 3 / 2) << "less than half of the reflected light passes above the shaded half";
+    EXPECT_NEAR(organs[1].energy.mean, organs[1].incident_energy.mean, 1e-4) << "black";
+    // The sums of the whole scene have the same estimators.
+    expect(m.energy->leaf_area.sunlit, sunlit[0].mean);
+    EXPECT_NEAR(m.energy->leaves.incident[0].energy.total.mean, organs[0].incident_energy.mean, 1e-6);
+  }
+}
+
 TEST_F(Energy, AnOrgansCentreIsInTheCoordinatesOfTheFile) {
   Session session(silent_log(), {1, {}, {}});
   const std::string sun = "LightSource \"sky\"\n";

@@ -257,7 +257,10 @@ Table organ_table(const FluxMeasurement& measurement, const Organs& organs) {
     add("_w_m2", &OrganShare::energy, incident.energy.total);
     add("_direct_w_m2", &OrganShare::direct, incident.energy.total);
     add("_umol_m2_s", &OrganShare::photons, incident.photons.total);
+    add("_incident_w_m2", &OrganShare::incident_energy, incident.energy.total);
+    add("_incident_umol_m2_s", &OrganShare::incident_photons, incident.photons.total);
   }
+  if (measurement.energy) add_measured("sunlit_share", [&](size_t i) { return measurement.energy->sunlit_organs[i]; });
   return table;
 }
 

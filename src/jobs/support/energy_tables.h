@@ -26,8 +26,9 @@ std::string bands_text(const std::vector<NamedRange>& ranges, Interval optics_nm
 Table energy_table(const FluxMeasurement& measurement);
 /// Returns a table of the leaf area: all, sunlit and shaded, with the light on it, for each unit of its area.
 Table leaf_table(const FluxMeasurement& measurement);
-/// Returns a table with one row for each organ: name, material, area, centre, and absorbed light: for each unit of its
-/// area if the measurement is by energy, else as shares of the incident light.
+/// Returns a table with one row for each organ: name, material, area, centre, and absorbed light as shares of the
+/// incident light; if the measurement is by energy, absorbed and incident light for each unit of its area, and its
+/// sunlit share.
 Table organ_table(const FluxMeasurement& measurement, const Organs& organs);
 
 /// Returns fAPAR: the share of the photons from 400 to 700 nm that leaves absorb; nullopt without such a band or
@@ -35,8 +36,9 @@ Table organ_table(const FluxMeasurement& measurement, const Organs& organs);
 std::optional<MeanError> fapar(const FluxMeasurement& measurement);
 
 /// Writes a PLY file (binary, little endian) of all meshes. Faces have the light that their organ absorbs in each band,
-/// as properties NAME_w_m2 and NAME_umol_m2_s; the first band is also the property `quality`, and a colour of faces and
-/// vertices. Returns the number of surfaces that are left out, since they are no meshes. Throws InputError.
+/// as properties NAME_w_m2, NAME_umol_m2_s, and NAME_incident_ before these units, and `sunlit_share`; the first band
+/// is also the property `quality`, and a colour of faces and vertices. Returns the number of surfaces that are left
+/// out, since they are no meshes. Throws InputError.
 size_t write_organ_ply(const std::string& path, const FluxMeasurement& measurement, const Organs& organs);
 
 }  // namespace frond

@@ -34,7 +34,8 @@ void append(std::vector<unsigned char>& bytes, const T& value) {
   bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
-/// Light for each unit of an organ's area, by band: W/m^2, then umol/(m^2 s).
+/// Light for each unit of an organ's area, by band: absorbed W/m^2, umol/(m^2 s), then the same of the incident light;
+/// last the sunlit share.
 std::vector<float> light_of(const FluxMeasurement& measurement, const Organs& organs, uint64_t number) {
   const size_t bands = measurement.bands.size();
   std::vector<float> light;
@@ -44,7 +45,10 @@ std::vector<float> light_of(const FluxMeasurement& measurement, const Organs& or
     const IncidentBand& incident = measurement.energy->incident[band];
     light.push_back(float(share.energy.mean * incident.energy.total * per_area));
     light.push_back(float(share.photons.mean * incident.photons.total * per_area));
+    light.push_back(float(share.incident_energy.mean * incident.energy.total * per_area));
+    light.push_back(float(share.incident_photons.mean * incident.photons.total * per_area));
   }
+  light.push_back(float(measurement.energy->sunlit_organs[number - 1].mean));
   return light;
 }
 
@@ -83,11 +87,12 @@ size_t write_organ_ply(const std::string& path, const FluxMeasurement& measureme
   head +=
       fmt::format("element face {}\nproperty list uchar int vertex_indices\n{}property float quality\n", faces, colors);
   for (const Band& band : measurement.bands)
-    head += fmt::format("property float {0}_w_m2\nproperty float {0}_umol_m2_s\n", band.name);
-  head += fmt::format("property int {}\nend_header\n", kOrganKinds[size_t(organs.kind())]);
+    for (const char* what : {"_w_m2", "_umol_m2_s", "_incident_w_m2", "_incident_umol_m2_s"})
+      head += fmt::format("property float {}{}\n", band.name, what);
+  head += fmt::format("property float sunlit_share\nproperty int {}\nend_header\n", kOrganKinds[size_t(organs.kind())]);
   std::vector<unsigned char> vertices, of_faces;
   int32_t next = 0;
-  const std::vector<float> dark(2 * measurement.bands.size(), NAN);
+  const std::vector<float> dark(4 * measurement.bands.size() + 1, NAN);
   (void)organs.visit_triangles([&](const std::array<Vec3d, 3>& corners, uint64_t number) {
     const std::vector<float> light = number == 0 ? dark : light_of(measurement, organs, number);
     const Color color = viridis(double(light[0]) / white);

@@ -18,6 +18,15 @@ double area_factor(const AffineMap& map) {
 
 }  // namespace
 
+RandomSurfacePoint surface_point(const ShapeEmitter& emitter, Vec2 u, const AffineMap& map, double area) {
+  const auto sample = emitter.sample(u);
+  const Vec3& own = sample.point.p;
+  const Vec3 ng = map.normal(sample.point.ng), p = map.point(own);
+  const Vec3 reach = map.bound_point({std::abs(own.x), std::abs(own.y), std::abs(own.z)});
+  const double alpha = std::clamp(double(emitter.opacity({own, sample.point.ng, sample.uv})), 0.0, 1.0);
+  return {p, normalize_any(ng), largest_coordinate(reach), alpha * double(sample.weight) * double(length(ng)) / area};
+}
+
 SurfacePoints::SurfacePoints(const Geometry& geometry, std::span<const uint8_t> is_counted) : geometry_(geometry) {
   StopPoll poll;
   geometry.visit_surfaces([&](const Surface& surface, const AffineMap&, uint64_t) {
@@ -56,13 +65,7 @@ std::vector<RandomSurfacePoint> SurfacePoints::draw(uint64_t key, uint64_t first
       const uint64_t index = positions[next].index;
       RandomStream random(hash_key(key, index, uint64_t{1}));
       const float u = random.uniform();
-      const auto sample = emitter.sample({u, random.uniform()});
-      const Vec3& own = sample.point.p;
-      const Vec3 ng = map.normal(sample.point.ng), p = map.point(own);
-      const Vec3 reach = map.bound_point({std::abs(own.x), std::abs(own.y), std::abs(own.z)});
-      const double alpha = std::clamp(double(emitter.opacity({own, sample.point.ng, sample.uv})), 0.0, 1.0);
-      points[index - first] = {p, normalize_any(ng), largest_coordinate(reach),
-                               alpha * double(sample.weight) * double(length(ng)) / factor};
+      points[index - first] = surface_point(emitter, {u, random.uniform()}, map, factor);
     }
   });
   return points;

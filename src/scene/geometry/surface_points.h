@@ -15,6 +15,9 @@ struct RandomSurfacePoint {
   double weight = 0;  ///< area over the mean area of a point; 1 if the density is uniform. 0 where alpha is 0
 };
 
+/// Returns a uniform sample of an emitter's area under a map to the scene's space. `area`: mean area of a point.
+RandomSurfacePoint surface_point(const ShapeEmitter& emitter, Vec2 u, const AffineMap& map, double area = 1);
+
 /// Draws points from the surfaces of some materials, in all instances, nearly uniformly over their one-sided area. The
 /// mean of the weights, times total(), is the area. Memory does not grow with the number of instances.
 class SurfacePoints {
