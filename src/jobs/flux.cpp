@@ -227,8 +227,8 @@ std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescri
   check_physical(description, run);
   if (irradiance) return PhotonWeights::from_irradiance(bands, *irradiance);
   if (photon_light_name(run, description) == kOfScene)
-    return PhotonWeights::from_irradiance(bands,
-                                          *horizontal_irradiance(meter.scene(), {400, 700}, run.session().pool()));
+    return PhotonWeights::from_irradiance(
+        bands, *horizontal_irradiance(meter.scene(), {400, 700}, run.session().pool(), meter.target_area()));
   return PhotonWeights::from_irradiance(bands, *named_spectrum(kOfPhotons, {}));
 }
 
@@ -330,6 +330,15 @@ void add_organs(const JobRun& run, Table organs, Result& result) {
   result.is_requested = true;
 }
 
+/// Throws InputError for a target of a scene that is lit by lamps alone.
+void check_target_has_light(const JobRun& run, const FluxMeter& meter) {
+  for (const char* name : {"target", "sides"})
+    if (run.args.given(name) && std::ranges::none_of(meter.scene().lights(), &Light::is_distant))
+      fail(scene_file(run.args),
+           "{}: light from outside enters there, and the scene has lamps in it alone, which need no target",
+           run.args.spelled(name));
+}
+
 /// Returns the request, of which set_bands completes the bands of --bands. Throws InputError for --ply without --by.
 FluxRequest request_of(const JobRun& run, const SpectrumPtr& irradiance) {
   const bool by_energy = run.args.given("bands");
@@ -375,6 +384,7 @@ Result measure_scene(const JobRun& run, const std::function<SceneDescription()>&
       warn_of_no_unit(run, description);
     }
     auto made = std::make_unique<FluxMeter>(run.session(), description, request, last ? &last->scene() : nullptr);
+    if (!run.args.given("times")) check_target_has_light(run, *made);
     provenance = scene_provenance(made->scene(), description);
     photons = photon_weights(run, description, *made, irradiance);
     light = photon_light_name(run, description);
@@ -400,14 +410,15 @@ Result measure_scene(const JobRun& run, const std::function<SceneDescription()>&
   // The tables without --bands are those of the first version, which scripts read (docs/compatibility.md): so is the
   // table of instances below.
   Result result = request.energy
-                      ? energy_result(measurement)
+                      ? energy_result(measurement, run.args.given("times"))
                       : Result{.tables = {share_table(measurement, photons)}, .text = share_text(measurement, photons)};
   result.facts.insert(
       result.facts.begin(),
       {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}});
   // Under sun and sky --csv writes the files of the first version, without the surfaces; --json has them.
   size_t beside_csv = 0;
-  if (Table surfaces = surface_table(measurement, photons); !request.energy && !surfaces.columns.empty()) {
+  Table surfaces = request.energy ? surface_energy_table(measurement) : surface_table(measurement, photons);
+  if (!surfaces.columns.empty()) {
     if (measurement.has_lamps) result.text += '\n' + to_text(surfaces);
     beside_csv = measurement.has_lamps ? 0 : 1;
     result.tables.push_back(std::move(surfaces));

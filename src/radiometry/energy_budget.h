@@ -21,15 +21,16 @@ struct EnergyShare {
   LightParts energy, photons;
 };
 
-/// Incident light of a band on a horizontal plane; scene units if the irradiance has no unit.
+/// Incident light of a band on a horizontal plane, or light of lamps and through the target; scene units if the
+/// irradiance has no unit.
 struct IncidentBand {
   struct Parts {
     double total = 0, direct = 0;
     double diffuse() const { return total - direct; }
   };
   Interval nm;    ///< where the band's response is not 0
-  Parts energy;   ///< W/m^2
-  Parts photons;  ///< umol/(m^2 s)
+  Parts energy;   ///< W/m^2; with lamps W
+  Parts photons;  ///< umol/(m^2 s); with lamps umol/s
 };
 
 /// Light that an organ absorbs in a band, and that falls on it on either side, as shares of all incident light.
@@ -53,7 +54,7 @@ struct EnergyBudget {
   std::vector<EnergyShare> reflected, transmitted;
   std::vector<OfMaterial> materials;
   OfLeaves leaves, sunlit, shaded;  ///< empty if no material counts as a leaf; sunlit and shaded without a sun
-  LeafArea leaf_area{};             ///< in the column of the target
+  LeafArea leaf_area{};             ///< in the column of the target; with lamps of the scene
   std::vector<OrganShare> organs;   ///< by organ, then band; empty unless requested
   /// Sunlit share of the area of each organ: FluxMeter::sunlit_organs.
   std::vector<MeanError> sunlit_organs = {};

@@ -186,7 +186,7 @@ class FluxMeter::Block {
         light->origin ? *light->origin : to_float(entry - d * distance_above(scene, at_entry, -d.z) - scene.origin()),
         light->direction};
     SampledSpectrum share = light->weight;
-    if (state_.entry.bottom) share *= SampledSpectrum(weight);
+    if (state_.entry.bottom && !light->origin) share *= SampledSpectrum(weight);
     constexpr int kFirstRoulette = 3, kPolled = 256;
     constexpr float kFull = 0.25f;  // share of the incident light below which Russian roulette may end a path
     const float full = kFull * share.max();
@@ -296,25 +296,24 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   if (request.energy && scene.wavelengths().bands()[0].response.empty())
     fail({}, "energy is measured in bands with responses: single wavelengths have none");
   const bool lamps = has_lamps(scene.lights());
-  if (lamps && (request.target || request.sides))
-    fail({}, "a target is the rectangle through which light from outside enters: lamps in the scene need none");
-  if (lamps && request.energy)
-    fail({}, "bands in W/m2 are of light from outside: under lamps single wavelengths give the photons on surfaces");
-  // The power of lamps is not that of an area.
-  const Target target = request.target ? *request.target
-                        : lamps        ? Target{0, 1, 0, 1, 0}
-                                       : default_target(scene, session.log());
-  if (!lamps) check_target(scene, target);
+  const bool outside = std::ranges::any_of(scene.lights(), &Light::is_distant);
+  if (lamps && request.irradiance && (request.energy || outside))
+    fail({}, "an irradiance replaces the spectrum of light from outside: lamps in the scene have their own");
+  // No light of lamps passes a target.
+  const Target target = request.target      ? *request.target
+                        : lamps && !outside ? Target{0, 1, 0, 1, 0}
+                                            : default_target(scene, session.log());
+  if (outside) check_target(scene, target);
   std::vector<Interval> ranges_nm = request.ranges_nm;
   if (request.energy && ranges_nm.empty())
     for (const Band& band : scene.wavelengths().bands())
       ranges_nm.push_back({band.response.front().nm, band.response.back().nm});
-  HorizontalIrradiance irradiance(loaded, range_of(ranges_nm), true);
+  const EntryBox entry{target, request.sides ? std::optional(bottom_of(scene)) : std::nullopt};
+  HorizontalIrradiance irradiance(loaded, range_of(ranges_nm), entry.target_area());
   LitBands wavelengths(scene.wavelengths(), irradiance, request.irradiance, request.ranges_nm);
   IncidentLight light(scene, std::move(irradiance), wavelengths.sample_for_index(0, 0.5f));
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
   if (request.sides && scene.period()) fail({}, "a periodic scene has no sides through which light could enter");
-  const EntryBox entry{target, request.sides ? std::optional(bottom_of(scene)) : std::nullopt};
   state_ = std::make_unique<State>(State{std::move(loaded), entry, std::move(light), std::move(wavelengths), materials,
                                          bands, FluxChannels{bands, request.energy}, std::move(is_leaf)});
   State& s = *state_;
@@ -326,7 +325,8 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   if (!s.is_leaf.empty()) {
     constexpr size_t kPoints = 1 << 17;
     s.sun = direction_to_sun(s.scene().lights());
-    s.leaf_area = leaf_area(s.scene(), target, s.is_leaf, s.sun, kPoints, session.pool());
+    s.leaf_area =
+        leaf_area(s.scene(), lamps ? std::nullopt : std::optional(target), s.is_leaf, s.sun, kPoints, session.pool());
   }
   if (!request.organs) return;
   std::vector<std::string> names;
@@ -364,6 +364,8 @@ std::vector<MeanError> FluxMeter::sunlit_organs(ThreadPool& pool) const {
   return sunlit_shares(s.scene(), *s.organs, *sun, std::clamp(size_t(s.paths) / s.organs->size(), kLeast, kMost), pool);
 }
 
+double FluxMeter::target_area() const { return state_->entry.target_area(); }
+
 uint64_t FluxMeter::paths() const { return state_->paths; }
 
 void FluxMeter::save(const std::filesystem::path& path) const {
@@ -396,7 +398,7 @@ FluxMeasurement FluxMeter::read() const {
                               .materials = {},
                               .sum = shares(kTotal),
                               .paths = s.paths,
-                              .target_area = s.entry.target_area(),
+                              .target_area = has_lamps(s.scene().lights()) ? 1 : target_area(),
                               .by_organ = {},
                               .areas = {}};
   measurement.has_lamps = has_lamps(s.scene().lights());

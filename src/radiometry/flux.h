@@ -51,8 +51,8 @@ struct FluxMeasurement {
   std::vector<OfMaterial> materials;   ///< materials of surfaces
   std::vector<MeanError> sum;          ///< sum of all absorbed and leaving light: 1 up to noise
   uint64_t paths = 0;
-  double target_area = 0;  ///< in scene units squared; 1 for lamps, whose shares are of their power
-  bool has_lamps = false;  ///< the light is that of lamps in the scene
+  double target_area = 0;  ///< in scene units squared; 1 with lamps: shares are then of a power
+  bool has_lamps = false;  ///< there are lamps in the scene
   /// Absorbed by each organ, by band; empty unless requested. The error is NaN where no path was absorbed.
   std::vector<MeanError> by_organ;
   std::vector<float> areas;  ///< one-sided area of each organ; empty unless requested
@@ -61,9 +61,9 @@ struct FluxMeasurement {
   double error() const;
 };
 
-/// Traces light from a scene's sun and sky through a horizontal rectangle, or light of the lamps in a scene, until it
-/// is absorbed or leaves. BSDFs are evaluated for the actual direction of the light, regardless of the scene's incident
-/// direction: energy is conserved.
+/// Traces light from a scene's sun and sky through a horizontal rectangle, and light of the lamps in the scene, until
+/// it is absorbed or leaves. With lamps, the incident light is the power of both. BSDFs are evaluated for the actual
+/// direction of the light, regardless of the scene's incident direction: energy is conserved.
 class FluxMeter {
  public:
   /// Throws InputError, also if there are too many organs to measure each. `other`: a scene with the same geometry,
@@ -79,6 +79,8 @@ class FluxMeter {
   FluxMeasurement read() const;
   /// Returns the organs; nullptr unless requested.
   const Organs* organs() const;
+  /// Returns the area of the target, in scene units squared.
+  double target_area() const;
   /// Returns the sunlit share of the area of each organ, from one point for each path so far; NaN without a sun.
   std::vector<MeanError> sunlit_organs(ThreadPool& pool) const;
   uint64_t paths() const;  ///< number of paths traced

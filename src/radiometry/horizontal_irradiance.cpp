@@ -137,18 +137,11 @@ SpectrumPtr spectrum_of(std::span<const double> nm, std::span<const double> valu
   return std::make_shared<TabulatedSpectrum>(points);
 }
 
-/// Throws InputError, which names the light, unless all lights are outside the scene, or if they may be, all are lamps
-/// in it.
+/// Throws InputError, which names the light, unless all lights are outside the scene or, if they may be, lamps in it.
 void check_lights(const Scene& scene, bool may_be_lamps) {
-  const bool lamps = may_be_lamps && has_lamps(scene.lights());
   for (const Light* light : scene.lights()) {
-    const bool is_lamp = !light->is_distant() && dynamic_cast<const EmissionSampler*>(light);
-    if (lamps && !is_lamp)
-      fail(scene.light_where(size_t(light->index())),
-           "flux measures lights outside the scene or lamps in it, not both together: this light is no lamp; measure "
-           "them "
-           "one after the other and add the results");
-    if (!lamps && !light->is_distant())
+    const bool is_lamp = may_be_lamps && dynamic_cast<const EmissionSampler*>(light);
+    if (!light->is_distant() && !is_lamp)
       fail(scene.light_where(size_t(light->index())),
            "{} lights outside the scene: \"distant\", \"sky\", or \"infinite\" without a portal; this light has a "
            "position "
@@ -175,9 +168,10 @@ bool is_direct(const Light& light, const Vec3& toward) {
 }
 
 HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm,
-                                           bool may_be_lamps) {
-  check_lights(loaded.scene(), may_be_lamps);
+                                           const std::optional<double>& target_area) {
+  check_lights(loaded.scene(), target_area.has_value());
   const auto lights = loaded.scene().lights();
+  if (target_area && has_lamps(lights)) area_ = *target_area;
   const WavelengthStrategy& wavelengths = loaded.scene().wavelengths();
   const auto listed = wavelengths.listed_nm();
   Interval range = wavelengths.range_nm();
@@ -196,6 +190,9 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std:
   std::vector<std::vector<double>> each;
   for (const Light* light : lights) {
     ListedIrradiance of_light = range_nm ? irradiance_by_ratio(*light, nm_) : irradiance(*light, nm_);
+    if (light->is_distant())
+      for (auto* values : {&of_light.all, &of_light.direct})
+        for (double& value : *values) value *= area_;
     for (size_t i = 0; i < nm_.size(); ++i) values_[i] += of_light.all[i], direct[i] += of_light.direct[i];
     each.push_back(std::move(of_light.all));
   }
@@ -215,12 +212,13 @@ HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded, const std:
   }
 }
 
-SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm, const ThreadPool& pool) {
+SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm, const ThreadPool& pool, double target_area) {
   const std::vector<double> points = points_nm(scene.lights(), nm);
   std::vector<double> values(points.size());
   for (const Light* light : scene.lights()) {
     const std::vector<double> of_light = irradiance(*light, points, pool).all;
-    for (size_t i = 0; i < points.size(); ++i) values[i] += of_light[i];
+    const double area = light->is_distant() && has_lamps(scene.lights()) ? target_area : 1;
+    for (size_t i = 0; i < points.size(); ++i) values[i] += of_light[i] * area;
   }
   return spectrum_of(points, values);
 }

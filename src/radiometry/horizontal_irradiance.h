@@ -23,16 +23,19 @@ bool is_direct(const Light& light, const Vec3& toward);
 class HorizontalIrradiance {
  public:
   /// Extended lights are integrated with 65,536 directions, the same on every machine. `range_nm`: to be known beyond
-  /// the wavelengths of the scene's bands. With `may_be_lamps` all lights may be lamps in the scene (has_lamps): their
-  /// spectral power takes the place of the irradiance. Throws InputError for another light at a finite distance, or
-  /// whose data end within the range, or if no light comes from above in a band of the scene.
+  /// the wavelengths of the scene's bands. With `target_area` lights may also be lamps in the scene (has_lamps): if
+  /// there are any, spectral power takes the place of the irradiance, of distant lights that through the target. Throws
+  /// InputError for another light at a finite distance, or whose data end within the range, or if no light comes from
+  /// above in a band of the scene.
   explicit HorizontalIrradiance(const LoadedScene& loaded, const std::optional<Interval>& range_nm = {},
-                                bool may_be_lamps = false);
+                                const std::optional<double>& target_area = {});
 
   /// Returns the irradiance at up to kLanes wavelengths.
   SampledSpectrum at(const SampledWavelengths& lambda) const;
   /// Returns each light's share of the irradiance, averaged over the wavelengths that have light.
   const std::vector<double>& shares() const { return shares_; }
+  /// Returns the factor from the irradiance of a distant light: the area of the target with lamps, otherwise 1.
+  double area() const { return area_; }
   /// Returns the irradiance in each band of the scene: of a band with a response, the mean under it.
   const std::vector<double>& bands() const { return bands_; }
   /// Returns the irradiance over the wavelengths of all bands, linear between points; nullptr if the bands are single
@@ -44,6 +47,7 @@ class HorizontalIrradiance {
  private:
   double at(double nm) const;
 
+  double area_ = 1;
   std::vector<double> nm_, values_;
   std::vector<double> shares_, bands_;
   SpectrumPtr spectrum_, direct_;
@@ -52,9 +56,9 @@ class HorizontalIrradiance {
 /// Returns whether a light is a lamp in the scene (EmissionSampler).
 bool has_lamps(std::span<const Light* const> lights);
 
-/// Returns the irradiance, or the spectral power of lamps, between two wavelengths as a spectrum with all points of the
-/// lights' own tables.
-SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm, const ThreadPool& pool);
+/// Returns the irradiance, or with lamps the spectral power of all lights, between two wavelengths as a spectrum with
+/// all points of the lights' own tables. `target_area`: through which the light of distant lights enters.
+SpectrumPtr horizontal_irradiance(const Scene& scene, Interval nm, const ThreadPool& pool, double target_area = 1);
 
 /// Returns the direction toward the scene's only directional light or sun (Light::sun), if it is above the horizon;
 /// nullopt if there is none or more than one.

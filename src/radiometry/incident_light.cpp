@@ -73,6 +73,7 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
     if (ray) s = Sample{ray->direction, ray->power, false, ray->origin};
   } else {
     s = sample_light(*lights_[i], cosine_sampled_[i], u, lambda);
+    if (s) s->weight *= SampledSpectrum(float(irradiance_.area()));
   }
   if (!s) return {};
   SampledSpectrum weight;

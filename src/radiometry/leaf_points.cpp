@@ -70,7 +70,7 @@ bool is_sunlit(const Scene& scene, const Hit& hit, const Vec3& w, uint64_t key) 
   return !scene.occluded({offset_origin(hit, w), w}, key);
 }
 
-LeafArea leaf_area(const Scene& scene, const Target& target, std::span<const uint8_t> is_leaf,
+LeafArea leaf_area(const Scene& scene, const std::optional<Target>& target, std::span<const uint8_t> is_leaf,
                    const std::optional<Vec3>& sun, size_t points, ThreadPool& pool) {
   enum Use : uint64_t { kPoints = 0x61726561, kShadows };
   constexpr size_t kBlock = 4096;
@@ -87,7 +87,7 @@ LeafArea leaf_area(const Scene& scene, const Target& target, std::span<const uin
   });
   WeightSums all, lit, shaded;
   for (size_t i = 0; i < points; ++i) {
-    const double weight = drawn[i].weight * count_in_column(scene, target, drawn[i].p);
+    const double weight = drawn[i].weight * (target ? count_in_column(scene, *target, drawn[i].p) : 1);
     all.add(weight), lit.add(sunlit[i] ? weight : 0), shaded.add(sunlit[i] ? 0 : weight);
   }
   const auto n = double(points);

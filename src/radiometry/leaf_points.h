@@ -27,14 +27,14 @@ inline bool is_sunlit(const Scene& scene, const RandomSurfacePoint& point, const
   return is_sunlit(scene, {.p = point.p, .ng = point.ng, .shading = {}, .at = {}, .extent = point.extent}, w, key);
 }
 
-/// One-sided area of leaves in the column of a target, in scene units squared.
+/// One-sided area of leaves, in scene units squared.
 struct LeafArea {
   MeanError all, sunlit, shaded;
 };
 
-/// Measures the area of the surfaces of the flagged materials at this number of random points. `sun`: direction toward
-/// the sun; nullopt: the sunlit area is unknown, NaN.
-LeafArea leaf_area(const Scene& scene, const Target& target, std::span<const uint8_t> is_leaf,
+/// Measures the area of the surfaces of the flagged materials at this number of random points, in the column of the
+/// target, or without one of all surfaces. `sun`: direction toward the sun; nullopt: the sunlit area is unknown, NaN.
+LeafArea leaf_area(const Scene& scene, const std::optional<Target>& target, std::span<const uint8_t> is_leaf,
                    const std::optional<Vec3>& sun, size_t points, ThreadPool& pool);
 
 /// Returns the sunlit share of the area of each organ, measured at this number of points of each. The error of a share

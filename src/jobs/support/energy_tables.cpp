@@ -61,9 +61,9 @@ void add_shares(Table& table, const LightParts& parts, const IncidentBand::Parts
 const LightParts kNoLight{{NAN, NAN}, {NAN, NAN}, {NAN, NAN}};
 
 /// Marks columns, with their errors, that text for terminals omits.
-void hide(Table& table, std::initializer_list<const char*> names) {
-  for (const char* name : names)
-    for (const std::string& column : {std::string(name), name + std::string("_se")})
+void hide(Table& table, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    for (const std::string& column : {name, name + "_se"})
       if (const auto found = std::ranges::find(table.columns, column, &Column::name); found != table.columns.end())
         found->only_data = true;
 }
@@ -131,6 +131,8 @@ std::optional<MeanError> fapar(const FluxMeasurement& measurement) {
 Table energy_table(const FluxMeasurement& measurement) {
   const EnergyBudget& budget = *measurement.energy;
   Table table{"energy"};
+  const bool lamps = measurement.has_lamps;
+  const std::string watts = lamps ? "w" : "w_m2", photons = lamps ? "umol_s" : "umol_m2_s";
   // Direct and diffuse light are columns, so that a row has one quantity and band.
   const auto add_row = [&](const std::string& quantity, const std::string& material, size_t band,
                            const EnergyShare& share) {
@@ -139,8 +141,8 @@ Table energy_table(const FluxMeasurement& measurement) {
     table.add("material", material);
     add_range(table, measurement, band);
     add_shares(table, share.energy, incident.energy);
-    add_parts(table, "w_m2", share.energy, incident.energy);
-    add_parts(table, "umol_m2_s", share.photons, incident.photons);
+    add_parts(table, watts, share.energy, incident.energy);
+    add_parts(table, photons, share.photons, incident.photons);
   };
   const auto add = [&](const std::string& quantity, const std::string& material,
                        const std::vector<EnergyShare>& shares) {
@@ -153,7 +155,7 @@ Table energy_table(const FluxMeasurement& measurement) {
     table.add("material", "");
     add_range(table, measurement, band);
     add_shares(table, parts, incident);
-    for (const char* unit : {"w_m2", "umol_m2_s"}) add_parts(table, unit, kNoLight, {1, 1});
+    for (const std::string& unit : {watts, photons}) add_parts(table, unit, kNoLight, {1, 1});
   };
   // The incident light is an integral over the lights' spectra and directions: it has no error of paths.
   for (size_t band = 0; band < budget.incident.size(); ++band) {
@@ -167,17 +169,17 @@ Table energy_table(const FluxMeasurement& measurement) {
   add("transmitted", "", budget.transmitted);
   for (const EnergyBudget::OfMaterial& m : budget.materials) add("absorbed", m.name, m.absorbed);
   for (const EnergyBudget::OfMaterial& m : budget.materials) add("incident", m.name, m.incident);
-  for (size_t band = 0; band < budget.incident.size(); ++band)
+  for (size_t band = 0; band < budget.incident.size() && !lamps; ++band)
     add_ratio("albedo", band, budget.reflected[band].energy, budget.incident[band].energy);
   if (const auto band = par_band(budget); band && !budget.leaves.absorbed.empty())
     add_ratio("fapar", *band, budget.leaves.absorbed[*band].photons, budget.incident[*band].photons);
-  hide(table, {"first_nm", "last_nm", "direct_share", "diffuse_share", "direct_umol_m2_s", "diffuse_umol_m2_s"});
+  hide(table, {"first_nm", "last_nm", "direct_share", "diffuse_share", "direct_" + photons, "diffuse_" + photons});
   return table;
 }
 
 /// One row for each group of leaves and band. The area is that of one side, as for the leaf area index; light falls on
 /// both. Light and area are measured with independent random numbers.
-Table leaf_table(const FluxMeasurement& measurement) {
+Table leaf_table(const FluxMeasurement& measurement, bool all_rows) {
   const EnergyBudget& budget = *measurement.energy;
   Table table{"leaves"};
   struct Row {
@@ -188,17 +190,21 @@ Table leaf_table(const FluxMeasurement& measurement) {
   const Row rows[] = {{"all", budget.leaf_area.all, budget.leaves},
                       {"sunlit", budget.leaf_area.sunlit, budget.sunlit},
                       {"shaded", budget.leaf_area.shaded, budget.shaded}};
+  const EnergyShare unknown{kNoLight, kNoLight};
   for (const Row& row : rows)
-    for (size_t band = 0; band < row.light.absorbed.size(); ++band) {
+    for (size_t band = 0; band < budget.incident.size(); ++band) {
+      const bool is_known = !row.light.absorbed.empty();
+      if (!is_known && !all_rows) continue;
       const IncidentBand& incident = budget.incident[band];
       const MeanError per_target = scaled(row.area, 1 / measurement.target_area);
-      const EnergyShare &absorbed = row.light.absorbed[band], &received = row.light.incident[band];
+      const EnergyShare &absorbed = is_known ? row.light.absorbed[band] : unknown,
+                        &received = is_known ? row.light.incident[band] : unknown;
       const auto add = [&](const std::string& name, const MeanError& share, double light) {
         table.add(name, divided(scaled(share, light), per_target));
       };
       table.add("leaves", row.name);
       table.add("area", row.area);
-      table.add("area_index", per_target);
+      if (!measurement.has_lamps) table.add("area_index", per_target);
       add_range(table, measurement, band);
       add("incident_w_m2", received.energy.total, incident.energy.total);
       add("absorbed_w_m2", absorbed.energy.total, incident.energy.total);
@@ -208,6 +214,27 @@ Table leaf_table(const FluxMeasurement& measurement) {
       add("absorbed_umol_m2_s", absorbed.photons.total, incident.photons.total);
     }
   hide(table, {"first_nm", "last_nm", "area", "absorbed_direct_w_m2", "absorbed_diffuse_w_m2", "incident_umol_m2_s"});
+  return table;
+}
+
+Table surface_energy_table(const FluxMeasurement& measurement) {
+  const EnergyBudget& budget = *measurement.energy;
+  Table table{"surfaces"};
+  for (size_t m = 0; m < budget.materials.size(); ++m)
+    for (size_t band = 0; band < budget.incident.size(); ++band) {
+      const double area = measurement.materials[m].area, per_area = measurement.target_area / area;
+      if (!(area > 0)) continue;
+      const EnergyBudget::OfMaterial& light = budget.materials[m];
+      const IncidentBand& incident = budget.incident[band];
+      table.add("material", light.name);
+      table.add("area", area);
+      add_range(table, measurement, band);
+      table.add("incident_w_m2", scaled(light.incident[band].energy.total, incident.energy.total * per_area));
+      table.add("absorbed_w_m2", scaled(light.absorbed[band].energy.total, incident.energy.total * per_area));
+      table.add("incident_umol_m2_s", scaled(light.incident[band].photons.total, incident.photons.total * per_area));
+      table.add("absorbed_umol_m2_s", scaled(light.absorbed[band].photons.total, incident.photons.total * per_area));
+    }
+  hide(table, {"first_nm", "last_nm"});
   return table;
 }
 

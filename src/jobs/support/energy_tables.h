@@ -22,10 +22,14 @@ std::vector<NamedRange> band_ranges(const Arguments& args);
 std::string bands_text(const std::vector<NamedRange>& ranges, Interval optics_nm);
 
 /// Returns a table with one row for each quantity and band: shares of the incident light, W/m^2 and umol/(m^2 s), also
-/// of direct and of diffuse light; albedo, and fAPAR for the band from 400 to 700 nm.
+/// of direct and of diffuse light; albedo, and fAPAR for the band from 400 to 700 nm. With lamps, W and umol/s.
 Table energy_table(const FluxMeasurement& measurement);
 /// Returns a table of the leaf area: all, sunlit and shaded, with the light on it, for each unit of its area.
-Table leaf_table(const FluxMeasurement& measurement);
+/// `all_rows`: also rows of what is unknown, without a sun.
+Table leaf_table(const FluxMeasurement& measurement, bool all_rows);
+/// Returns a table of the light on the surfaces of each material and that they absorb, for each unit of their area,
+/// without materials of instances.
+Table surface_energy_table(const FluxMeasurement& measurement);
 /// Returns a table with one row for each organ: name, material, area, centre, and absorbed light as shares of the
 /// incident light; if the measurement is by energy, absorbed and incident light for each unit of its area, and its
 /// sunlit share.

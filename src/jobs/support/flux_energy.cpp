@@ -49,11 +49,11 @@ void explain_no_leaves(const JobRun& run, const EnergyBudget& energy) {
 }
 
 /// Albedo and fAPAR are single values of JSON, too, since they are what is asked for most.
-Result energy_result(const FluxMeasurement& measurement) {
+Result energy_result(const FluxMeasurement& measurement, bool all_rows) {
   const EnergyBudget& energy = *measurement.energy;
   Result result{.tables = {energy_table(measurement)}};
   result.text = to_text(result.tables[0]);
-  for (size_t band = 0; band < energy.reflected.size(); ++band) {
+  for (size_t band = 0; band < energy.reflected.size() && !measurement.has_lamps; ++band) {
     const MeanError& albedo = energy.reflected[band].energy.total;
     result.facts.push_back({"albedo_" + measurement.bands[band].name, albedo.mean});
     result.facts.push_back({"albedo_" + measurement.bands[band].name + "_se", albedo.standard_error});
@@ -63,7 +63,7 @@ Result energy_result(const FluxMeasurement& measurement) {
     result.facts.push_back({"fapar_se", share->standard_error});
   }
   if (energy.leaves.absorbed.empty()) return result;
-  result.tables.push_back(leaf_table(measurement));
+  result.tables.push_back(leaf_table(measurement, all_rows));
   result.text += '\n' + to_text(result.tables[1]);
   return result;
 }

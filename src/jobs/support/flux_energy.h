@@ -13,8 +13,9 @@ namespace frond {
 void set_bands(const JobRun& run, const SceneDescription& description, FluxRequest& request);
 /// Reports which quantities of leaves are not measured, and why.
 void explain_no_leaves(const JobRun& run, const EnergyBudget& energy);
-/// Returns the tables, single values and text of a measurement by energy, except its organs.
-Result energy_result(const FluxMeasurement& measurement);
+/// Returns the tables, single values and text of a measurement by energy, except surfaces and organs. `all_rows`: as
+/// leaf_table has it.
+Result energy_result(const FluxMeasurement& measurement, bool all_rows);
 /// Plans the files of tables beside that of --csv, so that they are refused before the measurement if they cannot be
 /// written or would replace an input.
 std::list<PlannedOutput> planned_tables(const Arguments& args);

@@ -197,8 +197,8 @@ std::vector<double> durations(const std::vector<TimeStep>& steps) {
 }
 
 /// Units that are summed over a day, and those of the sums.
-constexpr std::tuple<std::string_view, std::string_view, double> kSummed[] = {{"umol_m2_s", "mol_m2", 1e-6},
-                                                                              {"w_m2", "mj_m2", 1e-6}};
+constexpr std::tuple<std::string_view, std::string_view, double> kSummed[] = {
+    {"umol_m2_s", "mol_m2", 1e-6}, {"w_m2", "mj_m2", 1e-6}, {"umol_s", "mol", 1e-6}, {"w", "mj", 1e-6}};
 
 /// Returns the sums over each day of the columns of photons and energy. All steps have the same rows and the same
 /// random numbers: the sum of the standard errors is an upper bound.
@@ -214,7 +214,7 @@ Table sums_of_days(const Table& all, const std::vector<TimeStep>& steps, const s
         for (const auto& [unit, of_day, factor] : kSummed) {
           const bool is_error = c.name.ends_with("_se");
           const std::string mean = is_error ? c.name.substr(0, c.name.size() - 3) : c.name;
-          if (!c.is_number() || !mean.ends_with(unit)) continue;
+          if (!c.is_number() || !(mean == unit || mean.ends_with("_" + std::string(unit)))) continue;
           double sum = 0;
           for (size_t k = begin; k < end; ++k) sum += std::get<0>(c.values)[k * rows + row] * seconds[k] * factor;
           sums.emplace_back(mean.substr(0, mean.size() - unit.size()) + std::string(of_day) + (is_error ? "_se" : ""),
@@ -233,9 +233,14 @@ Table sums_of_days(const Table& all, const std::vector<TimeStep>& steps, const s
   return days;
 }
 
-/// Returns the scene with the parameters of a step. They replace what the scene states in other words.
+/// Returns the scene with the parameters of a step, which replace what the scene states in other words; at night
+/// without the light.
 SceneDescription at_step(const JobRun& run, const SceneDescription& description, size_t light, const TimeStep& step) {
   SceneDescription d = description;
+  if (step.is_night) {
+    d.lights.erase(d.lights.begin() + ptrdiff_t(light));
+    return d;
+  }
   ParsedPlugin& plugin = d.lights[light].plugin;
   const auto states = [&step](const auto& is_one) {
     return std::ranges::any_of(step.light.params, [&](const auto& param) { return is_one(param.first); });
@@ -330,11 +335,12 @@ TimeSeries read_time_series(const JobRun& run, const SceneDescription& descripti
 Result measure_times(const JobRun& run, const TimeSeries& series, const SceneDescription& description,
                      const std::function<Result(const SceneDescription&)>& measure) {
   std::vector<std::optional<Result>> results(series.steps.size());
+  const bool has_others = description.lights.size() > 1 || !description.area_lights.empty();
   const Result* lit = nullptr;
   for (size_t i = 0; i < series.steps.size(); ++i) {
     const TimeStep& step = series.steps[i];
-    run.log().info(step.time + (step.is_night ? ": no light" : ""));
-    if (step.is_night) continue;
+    run.log().info(step.time + (!step.is_night ? "" : has_others ? ": the other lights" : ": no light"));
+    if (step.is_night && !has_others) continue;
     Result& result = results[i].emplace(measure(at_step(run, description, series.light, step)));
     if (result.stopped) return {.stopped = true};
     for (Table& table : result.tables) add_photons(number_of(result, kIncidentPar), table);

@@ -32,8 +32,8 @@ struct TimeSeries {
 TimeSeries read_time_series(const JobRun& run, const SceneDescription& description);
 
 /// Measures a scene at each step by `measure`, and returns the tables of all steps with a column `time`, a table
-/// `steps` of single values, and a table `days` of the sums over each day. Steps at night are not measured: their
-/// values are 0.
+/// `steps` of single values, and a table `days` of the sums over each day. At night the light is left out; in scenes
+/// without other lights such steps are not measured, and their values are 0.
 Result measure_times(const JobRun& run, const TimeSeries& series, const SceneDescription& description,
                      const std::function<Result(const SceneDescription&)>& measure);
 
