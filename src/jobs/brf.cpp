@@ -50,7 +50,7 @@ constexpr JobParam kParams[] = {
     kTimeLimitParam,
     scene_fluorescence_param(
         "Measure the radiance of fluorescence instead, and the share of it that escapes from the canopy.",
-        "wavelengths,compare"),
+        "wavelengths,compare,part,merge"),
     kSceneEmissionParam,
     kSwapParam,
     kIntegratorParam,
@@ -58,7 +58,7 @@ constexpr JobParam kParams[] = {
     JobParam("compare", texts,
              "MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate "
              "enough.",
-             {.type = "MATERIAL", .excludes = "plot,checkpoint,resume"}),
+             {.type = "MATERIAL", .excludes = "plot,checkpoint,resume,part,merge"}),
     JobParam("reference", text, "Reference leaf model of --compare; by default the exact model without noise.",
              {.type = "MATERIAL", .needs = "compare"}),
     JobParam("within", real, "Largest relative difference at which --compare calls a model accurate enough.",
@@ -69,6 +69,9 @@ constexpr JobParam kParams[] = {
     kJsonParam,
     kProvenanceParam,
     chart_param("plot", "Chart against the zenith angle, or maps of a hemisphere: .svg or .png."),
+    part_param("csv,json,plot,rms"),
+    kPathRangeParam,
+    merge_param("part,rms,time-limit,checkpoint,resume"),
     kCheckpointParam,
     kResumeParam,
 };
@@ -105,6 +108,21 @@ RenderPart first_part(const JobRun& run, const BrfMeter& meter, const ResumeFile
   return part;
 }
 
+/// Returns the sum of --merge, of this number of samples. Throws InputError for samples that no part has, that two
+/// parts have, or a part of another measurement.
+RenderPart merged_parts(const JobRun& run, const BrfMeter& meter, uint64_t samples) {
+  const auto files = run.args.texts("merge");
+  RenderPart sum = merge_parts({files.begin(), files.end()});
+  const std::string difference = meter.scene().empty_part().header.identity.difference(
+      sum.header.identity, "this command", '"' + files.front() + '"');
+  if (!difference.empty()) fail({}, "\"{}\" is a part of another measurement. {}", files.front(), difference);
+  if (std::string missing = missing_samples_text(sum); !missing.empty() || sample_count(sum.film).most != samples) {
+    if (missing.empty()) missing = fmt::format("samples {}:{}", sample_count(sum.film).most, samples);
+    fail({}, "no part has {} (a sample is {} paths of each view)", missing, BrfMeter::kRows);
+  }
+  return sum;
+}
+
 /// Returns nullopt if the measurement was stopped. `resume_file` may be nullptr.
 std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, const BrfMeter& meter,
                                       const ResumeFile* resume_file) {
@@ -115,22 +133,31 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
   const auto paths = uint64_t(run.args.count("paths"));
   const RefineLimits limits{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
                             uint64_t{1} << 32, run.args.real("rms")};
+  if (run.args.given("merge")) return meter.read(merged_parts(run, meter, limits.amount).film);
   RenderPart part = first_part(run, meter, resume_file);
   std::optional<Checkpointer> checkpointer;
   if (resume_file) {
     checkpointer.emplace(resume_file->checkpoint(), checkpoint_seconds(run.args), part, control.progress, run.log());
     control.progress = &*checkpointer;
   }
-  const auto write = [&checkpointer](const auto&) { checkpointer->write(); };
+  const bool writes_part = run.args.given("part");
+  const auto write = [&part](const auto& path) { write_part(path, part.header, part.film); };
+  SampleRange range{0, limits.amount};
+  if (writes_part) {
+    range = path_range_of(run.args, BrfMeter::kRows, limits.amount * BrfMeter::kRows);
+    range = {range.begin / BrfMeter::kRows, range.end / BrfMeter::kRows};
+  }
   std::optional<BrfMeasurement> measurement;
   const RefineEnd end = refine(
       limits, sample_count(part.film).most, control,
       [&](uint64_t samples) {
-        run.session().render(meter.scene(), {0, samples}, part, control);
+        if (!writes_part) range.end = samples;
+        if (!range.empty()) run.session().render(meter.scene(), range, part, control);
       },
       [&] { return measurement.emplace(meter.read(part.film)).relative_error(); });
-  if (resume_file) resume_file->keep(end != RefineEnd::stopped, false, write);
-  if (end == RefineEnd::stopped) return {};
+  checkpointer.reset();
+  if (resume_file) resume_file->keep(end != RefineEnd::stopped, writes_part, write);
+  if (end == RefineEnd::stopped || writes_part) return {};
   if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
     fail(scene_file(run.args), "{}: the time limit ended before every direction was measured",
          run.args.spelled("time-limit"));
@@ -271,9 +298,10 @@ Result brf(const JobRun& run) {
   const auto meter = within_time_limit(run, control, load, [&where] { return where; });
   run.context.log().check();
   const auto measured = measure(run, control, *meter, resume_file ? &*resume_file : nullptr);
-  if (!measured) {
-    if (resume_file) resume_file->report_stop();
-    return {.stopped = true};
+  if (!measured) {  // stopped, or --part has been written
+    const bool stopped = run.control.stop.stop_requested();
+    if (resume_file && stopped) resume_file->report_stop();
+    return {.stopped = stopped};
   }
   const BrfMeasurement& measurement = *measured;
   if (run.args.given("plot"))

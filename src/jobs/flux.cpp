@@ -8,6 +8,8 @@
 #include <list>
 
 #include "jobs/support/flux_energy.h"
+#include "jobs/support/flux_light.h"
+#include "jobs/support/flux_parts.h"
 #include "jobs/support/flux_tables.h"
 #include "jobs/support/provenance.h"
 #include "jobs/support/radiometry.h"
@@ -18,8 +20,6 @@
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/instance_errors.h"
 #include "radiometry/radiometer_scene.h"
-#include "spectra/named.h"
-#include "spectra/spd_file.h"
 
 namespace frond {
 
@@ -78,14 +78,14 @@ constexpr JobParam kParams[] = {
              {.type = "SPECTRUM", .unit = "W/(m2 nm)", .decides = true}),
     scene_fluorescence_param(
         "Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward.",
-        "wavelengths,bands,sides,rms,instance-error,irradiance,checkpoint,resume"),
+        "wavelengths,bands,sides,rms,instance-error,irradiance,checkpoint,resume,part,merge"),
     kSceneEmissionParam,
     JobParam(
         "times", text,
         "Table of times (CSV): measure the scene under the light of each, with one load of the scene. Columns: time "
         "(2026-06-21T11:00+02:00); latitude and longitude, or sun_zenith and sun_azimuth from north to east; ghi, "
         "dhi, dni (W/m2); any parameter of LightSource \"sky\", or of the scene's only LightSource.",
-        {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "checkpoint,resume,ply,fluorescence"}),
+        {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "ply,fluorescence"}),
     kSwapParam,
     kSeedParam,
     kIgnoreUnsupportedParam,
@@ -97,25 +97,12 @@ constexpr JobParam kParams[] = {
              "area, as properties, and as colours in the first band.",
              {.type = "FILE", .path = PathUse::write, .needs = "bands"}),
     kProvenanceParam,
+    part_param("csv,json,ply,rms,instance-error"),
+    kPathRangeParam,
+    merge_param("part,rms,instance-error,time-limit,checkpoint,resume"),
     kCheckpointParam,
     kResumeParam,
 };
-
-/// Returns a callback that writes a checkpoint if the last one is older than the interval.
-std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& meter, const ResumeFile& resume_file) {
-  using Clock = std::chrono::steady_clock;
-  const std::chrono::duration<double> interval(checkpoint_seconds(run.args));
-  return [&run, &meter, &resume_file, interval, last = Clock::now()]() mutable {
-    if (Clock::now() - last < interval) return;
-    const UnstoppableScope whole;
-    try {
-      meter.save(resume_file.checkpoint());
-    } catch (const InputError& error) {
-      run.log().warn({}, fmt::format("no checkpoint was written; the measurement continues: {}", error.what()));
-    }
-    last = Clock::now();
-  };
-}
 
 /// Whether the paths are doubled until an error is small enough, and are not a fixed number.
 bool has_error_limit(const Arguments& args) { return args.given("rms") || args.given("instance-error"); }
@@ -143,22 +130,26 @@ double largest_relative_error(const JobRun& run, const FluxMeasurement& measurem
   return std::max(largest, errors.median / run.args.real("instance-error"));
 }
 
-/// Returns nullopt if the measurement was stopped. `resume_file` may be nullptr.
-std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& control, FluxMeter& meter,
-                                       const std::optional<PhotonWeights>& photons, const ResumeFile* resume_file) {
-  // A refinement starts with few paths and doubles them.
+/// Returns the number of paths, of a refinement the first one, which is then doubled.
+uint64_t path_count(const JobRun& run, const FluxMeter& meter) {
   constexpr uint64_t kFirst = 1 << 16;
   // As in the BRF, each band needs some paths for its standard error.
   constexpr uint64_t kLeast = 32;
-  const uint64_t least = kLeast * meter.scene().wavelengths().bands().size();
-  const bool is_refined = has_error_limit(run.args);
-  const RefineLimits limits{std::max(least, is_refined ? kFirst : uint64_t(run.args.count("paths"))), uint64_t{1} << 40,
-                            is_refined ? 1.0 : 0.0};
-  std::function<void()> checkpoint;
-  if (resume_file) {
-    if (const auto path = resume_file->found(run.args.flag("resume"))) meter.resume(*path);
-    checkpoint = checkpoint_writer(run, meter, *resume_file);
+  return std::max(kLeast * meter.scene().wavelengths().bands().size(),
+                  has_error_limit(run.args) ? kFirst : uint64_t(run.args.count("paths")));
+}
+
+/// Returns nullopt if the measurement was stopped.
+std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& control, FluxMeter& meter,
+                                       const std::optional<PhotonWeights>& photons, FluxParts& parts) {
+  const uint64_t first = path_count(run, meter);
+  if (parts.merges()) {
+    parts.merge(meter, first);
+    return meter.read();
   }
+  const RefineLimits limits{first, uint64_t{1} << 40, has_error_limit(run.args) ? 1.0 : 0.0};
+  parts.begin(meter, {0, first});
+  const auto checkpoint = parts.checkpoint(meter);
   std::optional<FluxMeasurement> measurement;
   const RefineEnd end = refine(
       limits, meter.paths(), control,
@@ -170,79 +161,9 @@ std::optional<FluxMeasurement> measure(const JobRun& run, const RenderControl& c
   if (end != RefineEnd::stopped && meter.paths() == 0)
     fail(scene_file(run.args), "{}: the time limit ended before any light path was traced",
          run.args.spelled("time-limit"));
-  if (resume_file)
-    resume_file->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
-  if (end == RefineEnd::stopped) return {};
+  parts.end(meter);
+  if (parts.finish(end != RefineEnd::stopped).stopped) return {};
   return measurement ? std::move(measurement) : meter.read();
-}
-
-/// The value of --irradiance that selects the scene's lights.
-constexpr std::string_view kOfScene = "scene";
-/// Light of photons, which need a unit, where the scene's has none.
-constexpr std::string_view kOfPhotons = "solar-am1.5-global";
-
-/// Returns the spectrum that --irradiance names; nullptr if it is not given or selects the scene's lights.
-SpectrumPtr named_irradiance(const JobRun& run) {
-  const std::string light = run.args.text("irradiance");
-  if (light.empty() || light == kOfScene) return nullptr;
-  return named_or_read_spectrum(light, light, {});
-}
-
-/// Returns the name of the light of photons: --irradiance, or the scene's light if it has a unit.
-std::string photon_light_name(const JobRun& run, const SceneDescription& description) {
-  if (run.args.given("irradiance")) return run.args.text("irradiance");
-  return std::string(light_without_unit(description) ? kOfPhotons : kOfScene);
-}
-
-/// Throws InputError unless --irradiance is in W/(m2 nm).
-void check_physical(const SceneDescription& description, const JobRun& run) {
-  const std::string name = run.args.text("irradiance");
-  if (name != kOfScene) {
-    if (!name.empty() && !is_spectrum_file(name, name) && !name.starts_with("solar-"))
-      fail({}, "{}: \"{}\" is not in W/(m2 nm): a file in this unit is needed, or one of the spectra solar-*",
-           run.args.spelled("irradiance"), name);
-    return;
-  }
-  if (const ParsedPlugin* light = light_without_unit(description)) {
-    const ParsedParam* scaled = find_param(light->params, "illuminance");
-    fail(scaled ? scaled->where : light->where,
-         "{} {}: this light is scaled to {} and has no unit; take LightSource \"sky\" without \"illuminance\", or "
-         "name a spectrum in W/(m2 nm)",
-         run.args.spelled("irradiance"), kOfScene, scaled ? "an illuminance" : "luminance 1");
-  }
-}
-
-/// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm. Throws as
-/// check_physical does. `irradiance`: as named_irradiance returns it.
-std::optional<PhotonWeights> photon_weights(const JobRun& run, const SceneDescription& description,
-                                            const FluxMeter& meter, const SpectrumPtr& irradiance) {
-  const auto bands = meter.scene().wavelengths().bands();
-  if (!PhotonWeights::cover_par(bands)) return {};
-  if (const ParsedPlugin* light = light_without_unit(description); light && has_lamps(meter.scene().lights())) {
-    run.log().warn(light->where,
-                   "this light has no unit, so that photons are unknown: give it \"radiantpower\" (W) or "
-                   "\"photonflux\" (umol/s)");
-    return {};
-  }
-  check_physical(description, run);
-  if (irradiance) return PhotonWeights::from_irradiance(bands, *irradiance);
-  if (photon_light_name(run, description) == kOfScene)
-    return PhotonWeights::from_irradiance(
-        bands, *horizontal_irradiance(meter.scene(), {400, 700}, run.session().pool(), meter.target_area()));
-  return PhotonWeights::from_irradiance(bands, *named_spectrum(kOfPhotons, {}));
-}
-
-/// Says why there are no photons, and if --irradiance is given, that it has no effect.
-void explain_no_photons(const JobRun& run, std::span<const Band> bands) {
-  if (!bands.front().response.empty()) return;
-  const std::string needed =
-      fmt::format("no PAR: bands from 400 to 700 nm are needed, in steps of at most 50 nm ({} 400:700:20)",
-                  run.args.spelled("wavelengths"));
-  if (run.args.given("irradiance"))
-    run.log().warn({},
-                   fmt::format("{} has no effect on single wavelengths; {}", run.args.spelled("irradiance"), needed));
-  else
-    run.log().info(needed);
 }
 
 /// Returns which option gives more paths: "raise --paths", or "lower --rms".
@@ -308,19 +229,6 @@ void warn_of_end(const JobRun& run, const FluxMeasurement& measurement) {
     warn_of_time_limit(run, measurement.paths, measurement.error());
 }
 
-/// Warns that energies have no unit, unless the irradiance is in W/(m2 nm).
-void warn_of_no_unit(const JobRun& run, const SceneDescription& description) {
-  const std::string name = run.args.text("irradiance");
-  const bool is_of_scene = name.empty() || name == kOfScene;
-  if (is_of_scene ? !light_without_unit(description) : is_spectrum_file(name, name) || name.starts_with("solar-"))
-    return;
-  run.log().warn(
-      {},
-      fmt::format("{} has no unit: columns in W/m2 and umol/(m2 s) are in units of the scene, shares and "
-                  "ratios are right; LightSource \"sky\", or {} with a spectrum in W/(m2 nm), has one",
-                  is_of_scene ? "the light of the scene" : "the irradiance " + name, run.args.spelled("irradiance")));
-}
-
 /// Adds the table of organs before the others. In text for a terminal it follows them, unless a file has it. With
 /// --quiet the text is the organs alone, as CSV: requested data.
 void add_organs(const JobRun& run, Table organs, Result& result) {
@@ -364,19 +272,20 @@ void warn_of_sides(const JobRun& run, const FluxRequest& request, const Scene& s
                                    run.args.spelled("sides"), run.args.spelled("target")));
 }
 
-/// Traces light paths until the requested number or error is reached, with checkpoints. `last`: a meter of a scene that
-/// differs in parameters of lights alone, or nullptr; afterwards that of this scene.
-Result measure_scene(const JobRun& run, const std::function<SceneDescription()>& describe,
-                     std::unique_ptr<FluxMeter>& last) {
-  std::optional<ResumeFile> resume_file;
-  if (const auto names = kept_names_of(run.args)) resume_file.emplace(*names, run.control.stop, run.log());
+/// What a measurement needs beside its meter.
+struct Prepared {
+  FluxRequest request;
+  std::optional<PhotonWeights> photons = {};
+  std::string light = {};  ///< name of the light of photons
+  std::vector<Fact> provenance = {};
+};
+
+/// Loads a scene. `last`: a meter of a scene that differs in lights alone, or nullptr; afterwards that of this scene.
+Prepared prepare(const JobRun& run, const std::function<SceneDescription()>& describe, const RenderControl& control,
+                 std::unique_ptr<FluxMeter>& last) {
   const SpectrumPtr irradiance = named_irradiance(run);
-  const bool has_organs = run.args.given("by");
-  FluxRequest request = request_of(run, irradiance);
-  const RenderControl control = run.control_until(run.args.real("time-limit"));
-  std::optional<PhotonWeights> photons;
-  std::string light;
-  std::vector<Fact> provenance;
+  Prepared prepared{request_of(run, irradiance)};
+  auto& [request, photons, light, provenance] = prepared;
   const auto load = [&] {
     const SceneDescription description = describe();
     if (request.energy) {
@@ -391,17 +300,37 @@ Result measure_scene(const JobRun& run, const std::function<SceneDescription()>&
     return made;
   };
   last = within_time_limit(run, control, load, [&run] { return scene_file(run.args); });
+  return prepared;
+}
+
+/// Traces the paths of --samples for --part. `last`: as for prepare.
+Result measure_part(const JobRun& run, const std::function<SceneDescription()>& describe, FluxParts& parts,
+                    std::unique_ptr<FluxMeter>& last) {
+  const RenderControl control = run.control_until(run.args.real("time-limit"));
+  (void)prepare(run, describe, control, last);
+  run.context.log().check();
+  const SampleRange paths = path_range_of(run.args, FluxMeter::kBlockPaths, path_count(run, *last));
+  parts.begin(*last, paths);
+  if (last->end() < paths.end)
+    last->trace(paths.end - last->end(), run.session().pool(), control, parts.checkpoint(*last));
+  parts.end(*last);
+  return {.stopped = control.is_over()};
+}
+
+/// Traces light paths until the requested number or error is reached, with checkpoints. `last`: as for prepare.
+Result measure_scene(const JobRun& run, const std::function<SceneDescription()>& describe, FluxParts& parts,
+                     std::unique_ptr<FluxMeter>& last) {
+  const bool has_organs = run.args.given("by");
+  const RenderControl control = run.control_until(run.args.real("time-limit"));
+  auto [request, photons, light, provenance] = prepare(run, describe, control, last);
   FluxMeter& meter = *last;
   const auto bands = meter.scene().wavelengths().bands();
   const bool lamps = has_lamps(meter.scene().lights());
   if (!photons && !lamps) explain_no_photons(run, bands);
   if (!lamps) warn_of_sides(run, request, meter.scene());
   run.context.log().check();
-  auto measured = measure(run, control, meter, photons, resume_file ? &*resume_file : nullptr);
-  if (!measured) {
-    if (resume_file) resume_file->report_stop();
-    return {.stopped = true};
-  }
+  auto measured = measure(run, control, meter, photons, parts);
+  if (!measured) return {.stopped = true};
   const FluxMeasurement& measurement = *measured;
   const double error = measurement.error();
   warn_of_unmet(run, measurement);
@@ -455,16 +384,24 @@ Result flux(const JobRun& run) {
   if (run.args.flag("fluorescence")) return fluorescence_flux_result(run);
   if (!run.args.given("by")) warn_if_nothing_is_kept(run);
   const std::list<PlannedOutput> planned = planned_tables(run.args);
+  if (run.args.given("times") && !run.args.given("part"))
+    for (const char* name : {"checkpoint", "resume"})
+      if (run.args.given(name)) fail({}, "{} excludes {}", run.args.spelled("times"), run.args.spelled(name));
+  FluxParts parts(run);
   // Shares its geometry with the scene of the next time.
   std::unique_ptr<FluxMeter> last;
-  if (!run.args.given("times"))
-    return measure_scene(
-        run, [&run] { return described_scene(run); }, last);
-  const SceneDescription description = described_scene(run);
-  return measure_times(run, read_time_series(run, description), description, [&](const SceneDescription& at_time) {
-    return measure_scene(
-        run, [&] { return at_time; }, last);
-  });
+  const auto measure_one = [&](const std::function<SceneDescription()>& describe) {
+    return (parts.writes_part() ? measure_part : measure_scene)(run, describe, parts, last);
+  };
+  Result result;
+  if (run.args.given("times")) {
+    const SceneDescription description = described_scene(run);
+    result = measure_times(run, read_time_series(run, description), description,
+                           [&](const SceneDescription& at_time) { return measure_one([&] { return at_time; }); });
+  } else {
+    result = measure_one([&run] { return described_scene(run); });
+  }
+  return parts.writes_part() ? parts.finish(!run.control.stop.stop_requested()) : result;
 }
 
 }  // namespace

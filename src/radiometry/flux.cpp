@@ -12,7 +12,6 @@
 #include "radiometry/photons.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
-#include "radiometry/sums_file.h"
 #include "radiometry/trace_blocks.h"
 #include "scene/geometry/shape_emitter.h"
 #include "scene/leaf_models.h"
@@ -104,7 +103,7 @@ struct FluxMeter::State {
   FluxChannels channels;
   std::vector<uint8_t> is_leaf;           ///< by material index; empty: leaves are not measured apart
   std::vector<uint32_t> reflectors = {};  ///< indices of the materials of surfaces that light can hit
-  std::vector<Moment> moments = {};       ///< by quantity and channel
+  std::vector<ExactMoment> moments = {};  ///< by quantity and channel
   std::vector<uint64_t> seen = {};        ///< number of paths, by band
   std::unique_ptr<Organs> organs = {};
   std::unique_ptr<OrganSums> by_organ = {};
@@ -112,7 +111,7 @@ struct FluxMeter::State {
   std::vector<Interval> ranges_nm = {};  ///< of the bands, with splitting
   Interval optics_nm = {};               ///< of the scene's responses
   LeafArea leaf_area = {};
-  uint64_t paths = 0;
+  uint64_t begin = 0, end = 0;  ///< numbers of the paths that have been traced
 
   size_t quantities() const {
     const size_t of_materials = kFirstOfMaterials + materials * kQuantitiesOfMaterial;
@@ -125,12 +124,10 @@ struct FluxMeter::State {
   }
   size_t organ_channels() const { return channels.splits ? kOrganChannels * bands : bands; }
   const Scene& scene() const { return loaded.scene(); }
-  /// Returns all accumulators as bytes, for save and resume.
-  std::vector<std::span<std::byte>> sums() {
-    std::vector<std::span<std::byte>> arrays{std::as_writable_bytes(std::span(&paths, 1)),
-                                             std::as_writable_bytes(std::span(moments)),
-                                             std::as_writable_bytes(std::span(seen))};
-    if (by_organ) arrays.push_back(by_organ->bytes());
+  /// Returns all accumulators as bytes.
+  std::vector<std::span<const std::byte>> sums() const {
+    std::vector<std::span<const std::byte>> arrays{std::as_bytes(std::span(moments)), std::as_bytes(std::span(seen))};
+    if (by_organ) arrays.push_back(std::as_const(*by_organ).bytes());
     return arrays;
   }
 };
@@ -138,7 +135,7 @@ struct FluxMeter::State {
 /// Accumulators of one block of paths.
 class FluxMeter::Block {
  public:
-  static constexpr uint64_t kPaths = 1024;
+  static constexpr uint64_t kPaths = kBlockPaths;
 
   explicit Block(State& state)
       : moments(state.quantities() * state.channels.count()),
@@ -348,9 +345,9 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
                       const std::function<void()>& after_round) {
   State& s = *state_;
   trace_blocks<Block>(
-      s.loaded, s.paths, paths, pool, control, [&s] { return std::make_unique<Block>(s); },
+      s.loaded, s.end, paths, pool, control, [&s] { return std::make_unique<Block>(s); },
       [&s](const Block& block) {
-        for (size_t i = 0; i < s.moments.size(); ++i) s.moments[i] += block.moments[i];
+        for (size_t i = 0; i < s.moments.size(); ++i) s.moments[i].add(block.moments[i]);
         for (size_t i = 0; i < s.seen.size(); ++i) s.seen[i] += block.seen[i];
       },
       after_round);
@@ -361,27 +358,42 @@ std::vector<MeanError> FluxMeter::sunlit_organs(ThreadPool& pool) const {
   const State& s = *state_;
   const std::optional<Vec3> sun = direction_to_sun(s.scene().lights());
   if (!sun) return std::vector<MeanError>(s.organs->size(), kUnknown);
-  return sunlit_shares(s.scene(), *s.organs, *sun, std::clamp(size_t(s.paths) / s.organs->size(), kLeast, kMost), pool);
+  return sunlit_shares(s.scene(), *s.organs, *sun, std::clamp(size_t(paths()) / s.organs->size(), kLeast, kMost), pool);
 }
 
 double FluxMeter::target_area() const { return state_->entry.target_area(); }
 
-uint64_t FluxMeter::paths() const { return state_->paths; }
+uint64_t FluxMeter::paths() const { return state_->end - state_->begin; }
+uint64_t FluxMeter::end() const { return state_->end; }
 
-void FluxMeter::save(const std::filesystem::path& path) const {
-  const auto sums = state_->sums();
-  write_sums(path, state_->loaded.identity(), {sums.begin(), sums.end()});
+void FluxMeter::start_at(uint64_t path) { state_->begin = state_->end = path; }
+
+SumsPart FluxMeter::part() const {
+  SumsPart part{state_->loaded.identity(), state_->begin, state_->end, {}};
+  for (const auto& array : state_->sums())
+    part.arrays.emplace_back(reinterpret_cast<const char*>(array.data()), array.size());
+  return part;
 }
 
-void FluxMeter::resume(const std::filesystem::path& path) {
-  read_sums(path, state_->loaded.identity(), state_->sums());
+void FluxMeter::add(const SumsPart& part, const std::string& name) {
+  State& s = *state_;
+  const std::string difference = s.loaded.identity().difference(part.identity, "this command", '"' + name + '"');
+  if (!difference.empty()) fail({}, "\"{}\" is a part of another measurement. {}", name, difference);
+  const auto sums = s.sums();
+  if (!std::ranges::equal(sums, part.arrays, {}, std::ranges::size, std::ranges::size))
+    fail({}, "\"{}\" is damaged: measure it again", name);
+  if (s.begin == s.end) start_at(part.begin);
+  s.end = part.end;
+  add_elements(std::span(s.moments), std::as_bytes(std::span(part.arrays[0])));
+  add_elements(std::span(s.seen), std::as_bytes(std::span(part.arrays[1])));
+  if (s.by_organ) s.by_organ->add(std::as_bytes(std::span(part.arrays[2])));
 }
 
 FluxMeasurement FluxMeter::read() const {
   const State& s = *state_;
   const auto bands = s.scene().wavelengths().bands();
   const auto moment = [&](size_t quantity, size_t channel) {
-    return s.moments[quantity * s.channels.count() + channel];
+    return s.moments[quantity * s.channels.count() + channel].value();
   };
   const auto shares = [&](size_t quantity) {
     std::vector<MeanError> result;
@@ -397,7 +409,7 @@ FluxMeasurement FluxMeter::read() const {
                               .transmitted = shares(kTransmitted),
                               .materials = {},
                               .sum = shares(kTotal),
-                              .paths = s.paths,
+                              .paths = paths(),
                               .target_area = has_lamps(s.scene().lights()) ? 1 : target_area(),
                               .by_organ = {},
                               .areas = {}};
@@ -432,8 +444,8 @@ EnergyBudget FluxMeter::read_energy() const {
     std::vector<EnergyShare> result;
     for (size_t band = 0; band < s.bands; ++band) {
       const auto parts = [&](size_t direct, size_t diffuse) {
-        const Moment* of_quantity = &s.moments[quantity * s.channels.count()];
-        const Moment &a = of_quantity[direct], &b = of_quantity[diffuse];
+        const ExactMoment* of_quantity = &s.moments[quantity * s.channels.count()];
+        const Moment a = of_quantity[direct].value(), b = of_quantity[diffuse].value();
         return LightParts{(a + b).mean(s.seen[band]), a.mean(s.seen[band]), b.mean(s.seen[band])};
       };
       result.push_back({parts(s.channels.energy(band, true), s.channels.energy(band, false)),

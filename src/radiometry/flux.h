@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stop_token>
@@ -11,6 +10,7 @@
 #include "radiometry/brf.h"
 #include "radiometry/energy_budget.h"
 #include "radiometry/organs.h"
+#include "radiometry/sums_file.h"
 
 namespace frond {
 
@@ -84,11 +84,16 @@ class FluxMeter {
   /// Returns the sunlit share of the area of each organ, from one point for each path so far; NaN without a sun.
   std::vector<MeanError> sunlit_organs(ThreadPool& pool) const;
   uint64_t paths() const;  ///< number of paths traced
-  /// Writes the accumulators; the file is replaced only when complete. Throws InputError with the system's reason.
-  void save(const std::filesystem::path& path) const;
-  /// Continues from a saved file; the result equals that of an uninterrupted measurement. Throws InputError for a file
-  /// of another measurement, or a truncated or damaged file.
-  void resume(const std::filesystem::path& path);
+  /// Begins with this path, a multiple of kBlockPaths, in a measurement without paths.
+  void start_at(uint64_t path);
+  uint64_t end() const;  ///< number of the last path, plus one
+  /// Returns the sums of the paths so far.
+  SumsPart part() const;
+  /// Adds a part whose paths follow those so far. The result equals that of one measurement, to the last bit, if the
+  /// part begins at a multiple of kBlockPaths. Throws InputError for a part of another measurement; `name`: of its
+  /// file.
+  void add(const SumsPart& part, const std::string& name);
+  static constexpr uint64_t kBlockPaths = 1024;  ///< number of paths that are summed one by one
   const Scene& scene() const;
 
  private:

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "core/math/exact_sum.h"
 #include "core/spectrum.h"
 #include "instruments/errors/statistics.h"
 
@@ -94,6 +96,38 @@ struct Moment {
   }
 };
 
+/// Adds numbers that are stored as bytes to as many others.
+template <class T>
+void add_elements(std::span<T> to, std::span<const std::byte> bytes) {
+  for (size_t i = 0; i < to.size(); ++i) {
+    T number;
+    std::memcpy(static_cast<void*>(&number), bytes.data() + i * sizeof number, sizeof number);
+    to[i] += number;
+  }
+}
+
+/// Sum of the moments of blocks of paths. It is exact, so that it does not depend on the order of the blocks, or on how
+/// they are divided among parts of a measurement.
+class ExactMoment {
+ public:
+  void add(const Moment& block) {
+    const bool fits = block.sum < sum_.kLargestTerm && block.square < square_.kLargestTerm;  // false for NaN
+    if (!fits) ++lost_;
+    if (fits) sum_.add(block.sum), square_.add(block.square);
+  }
+  ExactMoment& operator+=(const ExactMoment& other) {
+    sum_ += other.sum_, square_ += other.square_, lost_ += other.lost_;
+    return *this;
+  }
+  /// NaN if a block had a value that is not finite.
+  Moment value() const { return lost_ == 0 ? Moment{sum_.value(), square_.value()} : Moment{NAN, NAN}; }
+
+ private:
+  ExactSum<60> sum_;
+  ExactSum<40> square_;
+  Int128 lost_ = 0;  ///< number of blocks that do not count; as wide as the others, so that there is no padding
+};
+
 /// Moments of organs, which all threads add to. They are integers, so that the sum does not depend on the order.
 class OrganSums {
  public:
@@ -105,7 +139,9 @@ class OrganSums {
     std::atomic_ref(cell.square).fetch_add(std::llrint(square * kUnits), std::memory_order_relaxed);
   }
   size_t size() const { return cells_.size(); }
-  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
+  /// Adds the sums of other paths, which bytes() has returned.
+  void add(std::span<const std::byte> bytes) { add_elements(std::span(&cells_.front().sum, 2 * cells_.size()), bytes); }
   Moment at(size_t cell) const { return {double(cells_[cell].sum) / kUnits, double(cells_[cell].square) / kUnits}; }
 
   static constexpr size_t kCellBytes = 16;

@@ -16,17 +16,16 @@ static_assert(std::endian::native == std::endian::little, "sums are kept in this
 namespace frond {
 namespace {
 
-// Format: magic word, size of the header, header, arrays. Each section is followed by its hash.
-constexpr std::string_view kMagic = "frond sums 1\n";
+// Format: magic word, number of parts, and for each part the size of its header, header, arrays. Headers and arrays are
+// followed by their hashes.
+constexpr std::string_view kMagic = "frond sums 2\n";
 
-std::string_view text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-std::string header_text(const Identity& identity) {
-  auto fields = nlohmann::json::array();
-  for (const Identity::Field& f : identity.fields()) fields.push_back({f.name, f.value});
-  return nlohmann::json{{"identity", fields}}.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+std::string header_text(const SumsPart& part) {
+  auto fields = nlohmann::json::array(), sizes = nlohmann::json::array();
+  for (const Identity::Field& f : part.identity.fields()) fields.push_back({f.name, f.value});
+  for (const std::string& array : part.arrays) sizes.push_back(array.size());
+  return nlohmann::json{{"identity", fields}, {"begin", part.begin}, {"end", part.end}, {"arrays", sizes}}.dump(
+      1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 class Writer {
@@ -73,35 +72,38 @@ class Reader {
 
 }  // namespace
 
-void write_sums(const std::filesystem::path& path, const Identity& identity,
-                const std::vector<std::span<const std::byte>>& arrays) {
-  const std::string header = header_text(identity);
+void write_sums(const std::filesystem::path& path, std::span<const SumsPart> parts) {
   NewFile file(path);
   Writer writer(file);
   writer.add(kMagic);
-  writer.add(header.size());
-  writer.add_with_hash(header);
-  for (const auto& array : arrays) writer.add_with_hash(text_of(array));
+  writer.add(parts.size());
+  for (const SumsPart& part : parts) {
+    const std::string header = header_text(part);
+    writer.add(header.size());
+    writer.add_with_hash(header);
+    for (const std::string& array : part.arrays) writer.add_with_hash(array);
+  }
   file.finish();
 }
 
-void read_sums(const std::filesystem::path& path, const Identity& identity,
-               const std::vector<std::span<std::byte>>& arrays) {
+std::vector<SumsPart> read_sums(const std::filesystem::path& path) {
   const std::string bytes = read_file_bytes(path, {});
   Reader reader(bytes, path);
-  const std::string_view header = reader.take_with_hash(reader.take_number());
-  Identity found;
-  try {
-    const auto parsed = nlohmann::json::parse(header);
-    for (const auto& field : parsed.at("identity")) found.add(field.at(0), field.at(1));
-  } catch (const nlohmann::json::exception&) {
-    reader.fail_as_damaged();
+  std::vector<SumsPart> parts;
+  for (uint64_t left = reader.take_number(); left > 0; --left) {
+    const std::string_view header = reader.take_with_hash(reader.take_number());
+    SumsPart& part = parts.emplace_back();
+    std::vector<uint64_t> sizes;
+    try {
+      const auto parsed = nlohmann::json::parse(header);
+      for (const auto& field : parsed.at("identity")) part.identity.add(field.at(0), field.at(1));
+      parsed.at("begin").get_to(part.begin), parsed.at("end").get_to(part.end), parsed.at("arrays").get_to(sizes);
+    } catch (const nlohmann::json::exception&) {
+      reader.fail_as_damaged();
+    }
+    for (const uint64_t size : sizes) part.arrays.emplace_back(reader.take_with_hash(size));
   }
-  const std::string difference = identity.difference(found, "this command", "\"" + path.string() + "\"");
-  if (!difference.empty()) fail({}, "--resume: this is another measurement. {}", difference);
-  std::vector<std::string_view> pieces;
-  for (const auto& array : arrays) pieces.push_back(reader.take_with_hash(array.size()));
-  for (size_t i = 0; i < arrays.size(); ++i) std::memcpy(arrays[i].data(), pieces[i].data(), arrays[i].size());
+  return parts;
 }
 
 }  // namespace frond

@@ -1,22 +1,28 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/parts/identity.h"
 
 namespace frond {
 
-/// Writes the accumulators of a measurement and its identity; the file is replaced only when complete. Throws
-/// InputError with the system's reason.
-void write_sums(const std::filesystem::path& path, const Identity& identity,
-                const std::vector<std::span<const std::byte>>& arrays);
+/// Sums of a measurement over a range of its paths. Parts of equal identities, of ranges that follow each other, add up
+/// to the same bits as one measurement.
+struct SumsPart {
+  Identity identity;
+  uint64_t begin = 0, end = 0;      ///< numbers of the paths; `end` is excluded
+  std::vector<std::string> arrays;  ///< bytes of the accumulators
+};
 
-/// Reads accumulators into arrays of the same sizes. Throws InputError, and leaves the arrays unchanged, for a file of
-/// another measurement, or a truncated or damaged file.
-void read_sums(const std::filesystem::path& path, const Identity& identity,
-               const std::vector<std::span<std::byte>>& arrays);
+/// Writes the parts of one or more measurements, as of the times of a day; the file is replaced only when complete.
+/// Throws InputError with the system's reason.
+void write_sums(const std::filesystem::path& path, std::span<const SumsPart> parts);
+
+/// Returns the parts of a file. Throws InputError for a file of another kind, or a truncated or damaged file.
+std::vector<SumsPart> read_sums(const std::filesystem::path& path);
 
 }  // namespace frond

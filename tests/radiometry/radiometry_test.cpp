@@ -312,10 +312,9 @@ TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
   const auto file = folder_.name_of("flux.part");
   FluxMeter first = meter(request);
   first.trace(2048, session.pool());
-  first.save(file);
+  write_sums(file, std::vector{first.part()});
   FluxMeter second = meter(request);
-  second.trace(1024, session.pool());  // is forgotten
-  second.resume(file);
+  second.add(read_sums(file)[0], file);
   EXPECT_EQ(second.paths(), 2048u);
   second.trace(5120 - 2048, session.pool());
   EXPECT_EQ(second.read().reflected[1].mean, whole.reflected[1].mean);
@@ -324,11 +323,12 @@ TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
 
   FluxRequest other = request;
   other.organs = {};
-  EXPECT_THAT(error_of([&] { meter(other).resume(file); }), HasSubstr("another measurement. command: "));
+  EXPECT_THAT(error_of([&] { meter(other).add(read_sums(file)[0], file); }),
+              HasSubstr("another measurement. command: "));
   const std::string bytes = read_file_bytes(file, {});
   const auto error_of_bytes = [&](std::string_view changed) {
     const auto path = folder_.write("changed.part", std::string(changed));
-    return error_of([&] { second.resume(path); });
+    return error_of([&] { (void)read_sums(path); });
   };
   for (const size_t size : {size_t(20), bytes.size() / 2, bytes.size() - 1})
     EXPECT_THAT(error_of_bytes(bytes.substr(0, size)), HasSubstr("cut short"));
@@ -337,6 +337,16 @@ TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
   EXPECT_THAT(error_of_bytes(damaged), HasSubstr("is damaged"));
   EXPECT_THAT(error_of_bytes("450,850"), HasSubstr("no measurement"));
   EXPECT_EQ(second.paths(), 5120u);
+
+  // Parts of whole blocks, added in their order.
+  FluxMeter of_parts = meter(request);
+  for (const uint64_t begin : {uint64_t{0}, uint64_t{3072}}) {
+    FluxMeter part = meter(request);
+    part.start_at(begin);
+    part.trace(begin == 0 ? 3072 : 5120 - 3072, session.pool());
+    of_parts.add(part.part(), "part");
+  }
+  EXPECT_EQ(of_parts.part().arrays, second.part().arrays);
 }
 
 /// A model against itself, and against soils that are brighter by 3 and by 1 %.

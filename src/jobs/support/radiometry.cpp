@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 
+#include "jobs/support/render_task.h"
 #include "system/atomic_file.h"
 
 namespace frond {
@@ -31,6 +32,10 @@ std::optional<std::array<double, 2>> period_of(const Arguments& args) {
 
 /// The same file serves as checkpoint and as complete result, because the result proper is the CSV file.
 std::optional<ResumeFile::Names> kept_names_of(const Arguments& args) {
+  if (args.given("part")) return ResumeFile::Names{args.text("part"), args.text("part") + ".checkpoint"};
+  for (const char* name : {"checkpoint", "resume"})
+    if (args.given(name) && !args.given("csv"))
+      fail({}, "{} needs {} or {}", args.spelled(name), args.spelled("csv"), args.spelled("part"));
   if (!args.given("checkpoint") && !args.flag("resume")) return {};
   if (args.text("csv") == "-")
     fail({}, "{} and {} save a file beside the file of {}, which cannot be standard output", args.spelled("checkpoint"),
@@ -38,6 +43,13 @@ std::optional<ResumeFile::Names> kept_names_of(const Arguments& args) {
   const std::string part = args.text("csv") + ".part";
   check_replaceable(part);
   return ResumeFile::Names{part, part};
+}
+
+SampleRange path_range_of(const Arguments& args, uint64_t block, uint64_t total) {
+  if (!args.given("samples")) return {0, total};
+  const SampleRange range = sample_range_of(args, "paths");
+  return {range.begin - range.begin % block,
+          range.end < uint64_t(args.count("paths")) ? range.end - range.end % block : total};
 }
 
 void warn_of_time_limit(const JobRun& run, uint64_t paths, double error) {

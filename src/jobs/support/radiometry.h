@@ -5,6 +5,7 @@
 #include "jobs/record/common_params.h"
 #include "jobs/support/resume_file.h"
 #include "radiometry/brf.h"
+#include "render/film/work.h"
 #include "report/table.h"
 
 /// Parameters shared by the jobs brf and flux: the measurement in a scene, and checkpoints beside the CSV file.
@@ -23,12 +24,28 @@ inline constexpr JobParam kPeriodParam("period", ArgumentKind::numbers,
 constexpr JobParam rms_param(std::string_view doc) {
   return JobParam("rms", ArgumentKind::real, doc, {.range = {kAboveZero.min, 1}});
 }
-inline constexpr JobParam kCheckpointParam(
-    "checkpoint", ArgumentKind::real,
-    "Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP.",
-    {.unit = "s", .range = kAboveZero, .needs = "csv"});
+inline constexpr JobParam kCheckpointParam("checkpoint", ArgumentKind::real,
+                                           "Keep the partial result in CSV.part at this interval, and when stopped by "
+                                           "SIGINT, SIGTERM or SIGHUP; with --part in "
+                                           "FILE.checkpoint.",
+                                           {.unit = "s", .range = kAboveZero});
 inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
-                                       "Resume from CSV.part if it exists; write one too.", {.needs = "csv"});
+                                       "Resume from CSV.part, or the file of --part, if it exists; write one too.");
+constexpr JobParam part_param(std::string_view excludes) {
+  return JobParam("part", ArgumentKind::text,
+                  "Write the sums over the paths of --samples instead of a result, to be combined with --merge.",
+                  {.type = "FILE", .path = PathUse::write, .excludes = excludes});
+}
+inline constexpr JobParam kPathRangeParam(
+    "samples", ArgumentKind::text,
+    "Range of the paths to measure, without END, as in 0:500000. Both ends are rounded down to whole blocks of paths.",
+    {.type = "FIRST:END", .needs = "part"});
+constexpr JobParam merge_param(std::string_view excludes) {
+  return JobParam("merge", ArgumentKind::texts,
+                  "Part of this measurement, written by --part: return the result of all parts. The other options must "
+                  "be those of the parts.",
+                  {.type = "FILE", .path = PathUse::read, .excludes = excludes});
+}
 
 /// Appends what identifies a band in a row of data: its name, if it has one, and its wavelength.
 void add_band(Table& table, const Band& band);
@@ -40,7 +57,12 @@ std::optional<Target> target_of(const Arguments& args);
 std::optional<std::array<double, 2>> period_of(const Arguments& args);
 /// Warns if the time limit ended a measurement before --paths, or before its standard error was as small as --rms.
 void warn_of_time_limit(const JobRun& run, uint64_t paths, double error);
-/// Returns the names of the partial result beside --csv; nullopt if neither --checkpoint nor --resume is given.
+/// Returns the range of --samples, or all paths. Both ends are multiples of `block`, except the end of all paths,
+/// `total`:
+/// --paths, or more if the measurement needs them.
+SampleRange path_range_of(const Arguments& args, uint64_t block, uint64_t total);
+/// Returns the names of --part and its checkpoint, or of the partial result beside --csv; nullopt if none of --part,
+/// --checkpoint and --resume is given.
 std::optional<ResumeFile::Names> kept_names_of(const Arguments& args);
 
 }  // namespace frond

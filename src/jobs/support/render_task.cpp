@@ -36,23 +36,6 @@ Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
   return crop;
 }
 
-/// Parses --samples 64:128. Throws InputError.
-SampleRange range_of(const Arguments& args) {
-  const std::string text = args.text("samples");
-  const auto ends = split(text, ':');
-  SampleRange range;
-  const auto read = [&text](const std::string& word, uint64_t& value) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size();
-  };
-  if (ends.size() != 2 || !read(ends[0], range.begin) || !read(ends[1], range.end) || range.empty() ||
-      range.end > 1u << 30)
-    fail({}, "{} takes FIRST:END, such as 64:128 for samples 64 to 127: \"{}\"", args.spelled("samples"), text);
-  if (args.given("spp") && range.end > uint64_t(args.count("spp")))
-    fail({}, "{} {} ends above {} {}", args.spelled("samples"), text, args.spelled("spp"), args.count("spp"));
-  return range;
-}
-
 /// Throws InputError for what the load, which may take minutes, would find wrong only at its end.
 void check_early(const Arguments& args, const std::vector<std::string>& channels) {
   (void)ChannelList(channels);
@@ -64,6 +47,23 @@ void check_early(const Arguments& args, const std::vector<std::string>& channels
 }
 
 }  // namespace
+
+SampleRange sample_range_of(const Arguments& args, const std::string& amount) {
+  const std::string text = args.text("samples");
+  const auto ends = split(text, ':');
+  SampleRange range;
+  const auto read = [](const std::string& word, uint64_t& value) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size();
+  };
+  const auto most = uint64_t(args.count(amount));
+  if (ends.size() != 2 || !read(ends[0], range.begin) || !read(ends[1], range.end) || range.empty() ||
+      (most == 0 && range.end > 1u << 30))
+    fail({}, "{} takes FIRST:END, such as 64:128 for samples 64 to 127: \"{}\"", args.spelled("samples"), text);
+  if (most > 0 && range.end > most)
+    fail({}, "{} {} ends above {} {}", args.spelled("samples"), text, args.spelled(amount), most);
+  return range;
+}
 
 void RenderTask::read(const SceneInput& input) {
   Problems problems;
@@ -108,7 +108,7 @@ void RenderTask::apply_arguments() {
   film_where_ = description_.film.where;
   for (const Location& place : {film_where_, description_.integrator.where})
     if (place.file) where_ = place;
-  if (args.given("samples")) samples_ = range_of(args);
+  if (args.given("samples")) samples_ = sample_range_of(args, "spp");
   std::vector<std::string> channels;
   if (const std::string text = args.text("channels"); !text.empty()) channels = split(text, ',');
   if (args.flag("for-denoiser")) {

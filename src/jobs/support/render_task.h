@@ -11,6 +11,9 @@
 
 namespace frond {
 
+/// Parses --samples 64:128, of the samples or paths whose number is the parameter `amount`. Throws InputError.
+SampleRange sample_range_of(const Arguments& args, const std::string& amount);
+
 /// A render as described by the arguments of the job `render`: reads the scene, selects leaf models, builds the scene,
 /// renders. The caller writes the film.
 class RenderTask {
