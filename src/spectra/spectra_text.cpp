@@ -96,6 +96,23 @@ std::optional<SpectraText> envi_plot(const std::vector<std::string_view>& lines)
   return SpectraText{table_from(lines, first, names), "ENVI ASCII plot"};
 }
 
+/// NASA's SeaBASS, the layout of OceanColor's response functions: lines "/KEY=VALUE" up to "/end_header".
+std::optional<SpectraText> seabass(const std::vector<std::string_view>& lines) {
+  const auto end = std::ranges::find_if(lines, [](std::string_view line) { return line.starts_with("/end_header"); });
+  if (end == lines.end() || std::find(lines.begin(), end, "/begin_header") == end) return {};
+  const auto value = [&](std::string_view key) {
+    const auto line = std::find_if(lines.begin(), end, [&](std::string_view l) { return l.starts_with(key); });
+    return line == end ? std::string_view() : line->substr(key.size());
+  };
+  std::string names(value("/fields="));
+  if (names.empty()) return {};
+  if (names_wavelengths(names.substr(0, names.find(','))) && value("/units=").starts_with("um"))
+    names.insert(names.find(','), "(um)");
+  const std::string_view delimiter = value("/delimiter=");
+  if (delimiter != "comma") std::ranges::replace(names, ',', delimiter == "tab" ? '\t' : ' ');
+  return SpectraText{table_from(lines, size_t(end - lines.begin()) + 1, names), "SeaBASS"};
+}
+
 /// A table whose line of names follows lines that are no comments.
 std::optional<SpectraText> after_a_head(const std::vector<std::string_view>& lines) {
   constexpr size_t kLongestHead = 500;
@@ -155,7 +172,7 @@ WavelengthNames wavelength_names(const std::vector<TableField>& names) {
 SpectraText spectra_text(std::string_view text) {
   const std::vector<std::string_view> lines = lines_of(text);
   if (!lines.empty())
-    for (auto* const layout : {&spectra_vista, &envi_plot, &library, &after_a_head})
+    for (auto* const layout : {&spectra_vista, &envi_plot, &library, &seabass, &after_a_head})
       if (auto found = layout(lines)) return std::move(*found);
   return {std::string(text), {}};
 }

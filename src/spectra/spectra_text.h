@@ -37,8 +37,8 @@ struct SpectraText {
 };
 
 /// Recognises files of Spectra Vista (.sig), Spectral Evolution (.sed), the libraries ECOSTRESS and ASTER, ASCII plots
-/// of ENVI, and tables whose line of names follows other lines (ASD's ViewSpec and others): the names of their columns
-/// begin with that of wavelengths, and numbers follow.
+/// of ENVI, NASA's SeaBASS, and tables whose line of names follows other lines (ASD's ViewSpec and others): the names
+/// of their columns begin with that of wavelengths, and numbers follow.
 SpectraText spectra_text(std::string_view text);
 
 }  // namespace frond

@@ -89,6 +89,10 @@ TableField field_of(std::string_view line, size_t begin, size_t end) {
 void check_text(std::string_view text, const Location& where) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     fail(where, "the file is UTF-16 text: save it as UTF-8 (in a spreadsheet: \"CSV UTF-8\")");
+  if (text.starts_with("PK\x03\x04"))
+    fail(where,
+         "the file is a workbook (.xlsx) or another archive: save its sheet as CSV, in a spreadsheet or by "
+         "pandas.read_excel(FILE, sheet_name=...).to_csv(...)");
   if (text.find('\0') != text.npos) fail(where, "not a text file: a table of text, such as CSV, is expected");
 }
 

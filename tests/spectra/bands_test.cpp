@@ -275,6 +275,22 @@ TEST_F(Responses, HaveTheNamesOfTheirFilesAndKeepTheirOrder) {
   EXPECT_EQ(at({550})->bands()[0].name, "");
 }
 
+/// A table of a whole sensor, with a thermal band and one that the sensor lacks.
+TEST_F(Responses, AreAllBandsOfATable) {
+  const std::string table =
+      write("s.csv", "wl,B1,B2,B3,B10\n500,1,0,0,0\n600,1,0,0,0\n700,0,1,0,0\n710,0,0,0,0\n11000,0,0,0,1\n");
+  const auto names_of = [](const WavelengthStrategy& strategy) {
+    std::vector<std::string> names;
+    for (const Band& band : strategy.bands()) names.push_back(band.name);
+    return names;
+  };
+  const std::string green = write("green.csv", "wl,x\n540,1\n560,1\n");
+  EXPECT_THAT(names_of(*make({table})), ElementsAre("B1", "B2"));
+  EXPECT_THAT(names_of(*make({green, table}, {"g", "a", "b"})), ElementsAre("g", "a", "b"));
+  EXPECT_THAT(names_of(*make({table + ":B2", green})), ElementsAre("B2", "green"));
+  EXPECT_THAT(error_of([&] { make({table + ":B3"}); }), HasSubstr("0 at every wavelength"));
+}
+
 TEST_F(Responses, NeedNamesThatTellThemApart) {
   const std::string file = write("nir.spd", "800 1 900 1");
   const auto error = [&](std::vector<std::string> names) {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "core/fluorescence.h"
-#include "spectra/spd_file.h"
+#include "spectra/response_file.h"
 #include "spectra/wavelengths/registry.h"
 #include "spectra/wavelengths/response_sampler.h"
 
@@ -23,8 +23,9 @@ constexpr Param kParams[] = {
      .list = true},
     {.name = "responses",
      .kind = ParamKind::string,
-     .doc = "Files of a sensor's responses, one for each band, or columns of a table (srf.csv:B4): a channel is the "
-            "mean radiance under its response.",
+     .doc =
+         "Files of a sensor's responses: of all bands (s2a.csv), of one band, or one column of a table (s2a.csv:B4). "
+         "A channel is the mean radiance under its response.",
      .list = true},
     {.name = "ranges",
      .kind = ParamKind::real,
@@ -210,13 +211,27 @@ class Bands final : public WavelengthStrategy {
   void read_responses(const std::vector<std::filesystem::path>& files, const Params& p) {
     const Location where = p.where("responses");
     for (const auto& file : files) {
-      std::vector<ResponsePoint> response;
-      for (const SpectrumPoint& point : read_spd_points(file, where))
-        response.push_back({point.lambda_nm, point.value});
-      response = without_margins(response);
-      bands_.push_back({ResponseSampler(response, where).centroid_nm(), response, spectrum_name(file)});
+      const std::vector<BandResponse> of_file = frond::read_responses(file, where);
+      std::string left_out;
+      for (const BandResponse& band : of_file) {
+        std::vector<ResponsePoint> response;
+        for (const SpectrumPoint& point : band.points) response.push_back({point.lambda_nm, point.value});
+        // Tables of whole sensors have thermal bands, and bands that the sensor of this name lacks.
+        if (of_file.size() > 1 && (response.empty() || !kAllowed_nm.contains(centroid_nm(response, where)))) {
+          left_out += fmt::format("{}{}", left_out.empty() ? "" : ", ", band.name);
+          continue;
+        }
+        bands_.push_back({centroid_nm(response, where), response, band.name});
+      }
+      if (!left_out.empty())
+        p.warn("responses", fmt::format("{}: bands without a response from {:g} to {:g} nm are left out: {}",
+                                        file.filename().string(), kAllowed_nm.min, kAllowed_nm.max, left_out));
     }
     set_names(p, "responses");
+  }
+
+  static double centroid_nm(const std::vector<ResponsePoint>& response, const Location& where) {
+    return ResponseSampler(response, where).centroid_nm();
   }
 
   void add_ranges(const Params& p) {
