@@ -5,9 +5,9 @@
 #include <map>
 
 #include "core/messages/excerpt.h"
+#include "spectra/envi_library.h"
 #include "spectra/spd_file.h"
 #include "spectra/spectra_text.h"
-#include "system/file_bytes.h"
 
 namespace frond {
 namespace {
@@ -118,7 +118,7 @@ std::vector<BandResponse> read_responses(const std::filesystem::path& path, cons
   const auto [file, column] = spectrum_column(path);
   if (is_foreign(path)) mark_foreign(file);
   std::vector<BandResponse> bands =
-      parse_responses(read_file_bytes(file, where, "spectrum file"), file.string(), column);
+      parse_responses(read_spectra_text(file, where, "spectrum file"), file.string(), column);
   if (bands.size() == 1 && bands[0].name.empty()) bands[0].name = spectrum_name(path);
   return bands;
 }

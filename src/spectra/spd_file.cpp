@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include "core/messages/excerpt.h"
+#include "spectra/envi_library.h"
 #include "spectra/named.h"
 #include "spectra/spectra_text.h"
-#include "system/file_bytes.h"
 #include "system/text_table.h"
 
 namespace frond {
@@ -183,7 +183,7 @@ bool is_spectrum_file(std::string_view word, const std::filesystem::path& path) 
 std::vector<SpectrumPoint> read_spd_points(const std::filesystem::path& path, const Location& where) {
   const auto [file, column] = spectrum_column(path);
   if (is_foreign(path)) mark_foreign(file);
-  return parse_spd_points(read_file_bytes(file, where, "spectrum file"), file.string(), column);
+  return parse_spd_points(read_spectra_text(file, where, "spectrum file"), file.string(), column);
 }
 
 SpectrumPtr read_spd(const std::filesystem::path& path, const Location& where) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 
+#include "spectra/envi_library.h"
 #include "system/lower_case.h"
 
 namespace frond {
@@ -123,8 +124,10 @@ std::optional<SpectraText> after_a_head(const std::vector<std::string_view>& lin
     if (names_wavelengths(name) && name.size() < lines[i].size() && begins_with_a_number(lines[i + 1])) {
       if (!has_head) return {};
       const bool is_sed = value_of(std::span(lines).first(i), "data").has_value() || lines[i - 1] == "Data:";
-      return SpectraText{table_from(lines, i + 1, std::string(lines[i])),
-                         is_sed ? "Spectral Evolution (.sed)" : "a table after other lines"};
+      return SpectraText{table_from(lines, i + 1, std::string(lines[i])), is_sed ? "Spectral Evolution (.sed)"
+                                                                          : lines[0] == kEnviLibrary
+                                                                              ? "spectral library of ENVI"
+                                                                              : "a table after other lines"};
     }
     has_head = has_head || (!lines[i].empty() && lines[i][0] != '#');
   }

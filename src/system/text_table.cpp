@@ -89,11 +89,14 @@ TableField field_of(std::string_view line, size_t begin, size_t end) {
 void check_text(std::string_view text, const Location& where) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     fail(where, "the file is UTF-16 text: save it as UTF-8 (in a spreadsheet: \"CSV UTF-8\")");
-  if (text.starts_with("PK\x03\x04"))
+  if (text.starts_with("PK\x03\x04") || text.starts_with("\xd0\xcf\x11\xe0"))
     fail(where,
-         "the file is a workbook (.xlsx) or another archive: save its sheet as CSV, in a spreadsheet or by "
+         "the file is a workbook (.xlsx, .xls): save its sheet as CSV, in a spreadsheet or by "
          "pandas.read_excel(FILE, sheet_name=...).to_csv(...)");
-  if (text.find('\0') != text.npos) fail(where, "not a text file: a table of text, such as CSV, is expected");
+  const bool is_binary = text.find('\0') != text.npos;
+  if (is_binary && (text.starts_with("ASD") || (text.starts_with("as") && text[2] >= '2' && text[2] <= '8')))
+    fail(where, "the file is a binary spectrum of ASD: export it as text, by ViewSpec or by the package pyASDReader");
+  if (is_binary) fail(where, "not a text file: a table of text, such as CSV, is expected");
 }
 
 }  // namespace

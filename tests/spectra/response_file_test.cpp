@@ -68,7 +68,7 @@ TEST(ResponseFile, WhatIsNoResponseIsRefused) {
   EXPECT_THAT(error("wl,B1,B2\n0.6,1,0\n0.7,1,0\n"), HasSubstr("are these micrometres?"));
   EXPECT_THAT(error("band,wl,r,q\n1,600,1,1\n"), HasSubstr("columns of bands, wavelengths and responses"));
   EXPECT_THAT(error("band,wl\n1,600\n"), HasSubstr("columns of bands, wavelengths and responses"));
-  EXPECT_THAT(error(std::string("PK\3\4\0\0", 6)), HasSubstr("a workbook (.xlsx) or another archive: save its sheet"));
+  EXPECT_THAT(error(std::string("PK\3\4\0\0", 6)), HasSubstr("a workbook (.xlsx, .xls): save its sheet"));
 }
 
 }  // namespace

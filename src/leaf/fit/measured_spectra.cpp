@@ -9,9 +9,9 @@
 #include <set>
 
 #include "leaf/tissue/constants.h"
+#include "spectra/envi_library.h"
 #include "spectra/spectra_text.h"
 #include "spectra/tabulated.h"
-#include "system/file_bytes.h"
 #include "system/text_table.h"
 
 namespace frond::leaf {
@@ -407,11 +407,11 @@ std::vector<MeasuredLeaf> parse_measured_leaves(std::string_view text, const std
 }
 
 std::vector<MeasuredLeaf> read_measured_leaves(const std::filesystem::path& path, const SpectraMeasurement& how) {
-  return parse_measured_leaves(read_file_bytes(path, {}, "measured spectra"), path.string(), how);
+  return parse_measured_leaves(read_spectra_text(path, {}, "measured spectra"), path.string(), how);
 }
 
 MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraMeasurement& how) {
-  return parse_measured_spectra(read_file_bytes(path, {}, "measured spectra"), path.string(), how);
+  return parse_measured_spectra(read_spectra_text(path, {}, "measured spectra"), path.string(), how);
 }
 
 }  // namespace frond::leaf

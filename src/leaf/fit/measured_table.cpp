@@ -7,7 +7,7 @@
 #include <set>
 
 #include "leaf/table/table_file.h"
-#include "system/file_bytes.h"
+#include "spectra/envi_library.h"
 
 namespace frond::leaf {
 namespace {
@@ -74,7 +74,7 @@ MeasuredTable measured_table(const MeasuredSpectra& spectra, double surface, con
 
 MeasuredTable read_table_or_spectra(const std::filesystem::path& path, const Location& where,
                                     const SpectraMeasurement& how, double surface) {
-  const std::string text = read_file_bytes(path, where, "leaf table");
+  const std::string text = read_spectra_text(path, where, "leaf table");
   if (is_leaf_table(text)) return {parse_table(text, path.string())};
   return measured_table(parse_measured_spectra(text, path.string(), how), surface, path.string());
 }
