@@ -31,7 +31,7 @@ Moments moments(const Filter& filter) {
 
 std::unique_ptr<Filter> make(std::string_view name, std::vector<ParsedParam> params = {}) {
   const Registry registry = make_registry({}, {});
-  return testing::make_plugin(registry.filters.get(name, {}), std::move(params));
+  return test::make_plugin(registry.filters.get(name, {}), std::move(params));
 }
 
 TEST(Filters, WeightsAverageToOneAndCentreOnThePixel) {
@@ -51,7 +51,7 @@ TEST(Filters, WeightsAverageToOneAndCentreOnThePixel) {
 
 TEST(Filters, SecondMomentsAreThoseOfTheShapes) {
   const auto radii = [](double r) {
-    return std::vector{testing::number("float", "xradius", {r}), testing::number("float", "yradius", {r})};
+    return std::vector{test::number("float", "xradius", {r}), test::number("float", "yradius", {r})};
   };
   EXPECT_NEAR(moments(*make("box", radii(0.5))).xx, 1.0 / 12, 1e-5);
   EXPECT_NEAR(moments(*make("triangle", radii(2))).xx, 4.0 / 6, 1e-4);
@@ -65,7 +65,7 @@ TEST(Filters, MitchellHasItsSecondMoment) {
 }
 
 TEST(Filters, ThatWeighNothingAreRefused) {
-  EXPECT_NE(error_of([] { make("gaussian", {testing::number("float", "sigma", {1e-6})}); }), "");
+  EXPECT_NE(error_of([] { make("gaussian", {test::number("float", "sigma", {1e-6})}); }), "");
 }
 
 }  // namespace

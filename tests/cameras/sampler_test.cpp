@@ -16,7 +16,7 @@ namespace {
 
 std::unique_ptr<Sampler> make(std::string_view name, uint64_t seed) {
   const Registry registry = make_registry({}, {});
-  return testing::make_plugin(registry.samplers.get(name, {}), {}, seed);
+  return test::make_plugin(registry.samplers.get(name, {}), {}, seed);
 }
 
 constexpr uint32_t kFilm = uint32_t(Dimension::film), kOnLight = uint32_t(Dimension::on_light),

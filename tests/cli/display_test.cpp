@@ -10,13 +10,13 @@
 namespace frond {
 namespace {
 
+using test::TevListener;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
-using testing::TevListener;
 using Manner = TevListener::Manner;
 
 class LiveDisplay : public CommandTest {
@@ -168,7 +168,7 @@ TEST_F(LiveDisplay, ShowsPartsAndImagesOfEightBitsToo) {
 }
 
 TEST_F(LiveDisplay, ThatIsNotThereIsAWarning) {
-  const testing::Port port;
+  const test::Port port;
   const Outcome o = render("a.exr", {"--display-server", port.address(), "--strict"});
   EXPECT_EQ(o.code, 0);
   EXPECT_THAT(o.err, HasSubstr("warning: display: cannot connect to " + port.address() + ": Connection refused; "));

@@ -109,8 +109,8 @@ std::string shadow_play(const std::string& before, const std::string& camera, co
 /// with probability 1 - 4e-5.
 template <class SeesSky>
 void expect_image(const std::string& text, double exposure, const SeesSky& sees_sky) {
-  const Film film = testing::render_text(text, {.samples = 1024});
-  const double sky = testing::render_text(shadow_play("", "", "")).mean(0, 0)[1];
+  const Film film = test::render_text(text, {.samples = 1024});
+  const double sky = test::render_text(shadow_play("", "", "")).mean(0, 0)[1];
   for (int j = 0; j < kPixels; ++j)
     for (int i = 0; i < kPixels; ++i) {
       constexpr int kPoints = 16, kTimes = 400;

@@ -9,8 +9,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 const std::string kOptions = R"(
 Film "rgb" "integer xresolution" 8 "integer yresolution" 8
@@ -107,7 +107,7 @@ TEST(Degenerate, SmoothCoatsOverSmoothMetal) {
                                   {.statistics = &statistics});
     EXPECT_TRUE(statistics.faults.empty()) << eta;
     EXPECT_EQ(film.not_finite(), 0u) << eta;
-    EXPECT_GT(testing::channel_mean(film, 1).mean, 0.5) << eta;
+    EXPECT_GT(test::channel_mean(film, 1).mean, 0.5) << eta;
   }
 }
 

@@ -10,8 +10,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 /// A plane seen from above so that its (u, v) spans the image: u to the right, v up.
 std::string textured_plane(const std::string& texture, const std::string& material) {

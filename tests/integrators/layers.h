@@ -10,7 +10,7 @@
 #include "tests/support/render_text.h"
 
 /// Scenes of media under a camera that looks down, and means of their images in three bands.
-namespace frond::testing {
+namespace frond::test {
 
 /// z-tests below use 5 standard errors: a false alarm in 1.7 million for each.
 inline constexpr double kSigmas = 5;
@@ -83,4 +83,4 @@ void expect_radiance(const std::string& text, int samples, const Expected& expec
 /// Linear from 400 to 700 nm.
 inline double ramp(double nm, double at_400, double at_700) { return at_400 + (nm - 400) / 300 * (at_700 - at_400); }
 
-}  // namespace frond::testing
+}  // namespace frond::test

@@ -10,11 +10,11 @@
 namespace frond {
 namespace {
 
+using test::channel_mean;
+using test::ChannelMean;
+using test::render_text;
 using test::z_limit;
 using test::z_of_chi_square;
-using testing::channel_mean;
-using testing::ChannelMean;
-using testing::render_text;
 
 /// A flat leaf that fills the film, seen at 40 degrees by an orthographic camera, adaxial side up.
 std::string flat_leaf(const std::string& light, const std::string& leaf, const std::string& placement = "",
@@ -58,8 +58,8 @@ void expect_same(const Film& a, const Film& b, const std::string& what) {
 std::array<ChannelMean, 3> own_f_cos(const std::string& plugin, std::vector<ParsedParam> params, const Vec3& wo,
                                      const Vec3& wi, int calls) {
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());
-  const auto strategy = testing::make_plugin(registry.wavelengths.get("smpte", {}), {});
-  const auto material = testing::make_plugin(registry.materials.get(plugin, {}), std::move(params));
+  const auto strategy = test::make_plugin(registry.wavelengths.get("smpte", {}), {});
+  const auto material = test::make_plugin(registry.materials.get(plugin, {}), std::move(params));
   ThreadPool pool(2);
   const Log& quiet = silent_log();
   material->prepare({*strategy, pool, quiet, {}});

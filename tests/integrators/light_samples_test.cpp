@@ -8,8 +8,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 /// A plane and a small ball of this albedo under a wide lamp; as a box, with a small lamp inside a closed sphere.
 std::string scene(const std::string& integrator, const char* albedo, bool is_box, const char* film = "") {

@@ -12,8 +12,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 Vec3 direction(RandomStream& random) {
   const float z = 2 * random.uniform() - 1, r = std::sqrt(1 - z * z), phi = 2 * kPi * random.uniform();

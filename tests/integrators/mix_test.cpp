@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-using testing::render_text;
+using test::render_text;
 
 /// A binary tree of mixtures, `levels` high, whose leaves are `plugin`. The root is called "m1".
 std::string mixtures(int levels, const std::string& plugin) {
@@ -43,7 +43,7 @@ TEST(Mix, OfManyStochasticMaterialsHasRoomForThem) {
     // A mixture of a material with itself equals the material.
     const Film one = render_text(mix_scene(mixtures(0, abm)), {.samples = 64, .wavelengths = wavelengths});
     for (size_t c = 0; c < 3; ++c) {
-      const auto a = testing::channel_mean(film, c), b = testing::channel_mean(one, c);
+      const auto a = test::channel_mean(film, c), b = test::channel_mean(one, c);
       EXPECT_GT(b.mean, 0);
       EXPECT_LT(std::abs(a.mean - b.mean), 5 * std::hypot(a.error, b.error)) << wavelengths << ", channel " << c;
     }

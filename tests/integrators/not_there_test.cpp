@@ -6,8 +6,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 struct NotThere final : Material {
   explicit NotThere(const Params&) {}

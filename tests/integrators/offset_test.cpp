@@ -8,8 +8,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 std::string seen_from(double distance, double extent, const std::string& shape) {
   return fmt::format(R"(

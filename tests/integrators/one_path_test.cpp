@@ -35,7 +35,7 @@ class Echo final : public OnePathIntegrator {
 
 TEST(OnePathIntegrator, GetsEachSampleOfABundleThatIsWanted) {
   const Registry registry = make_registry({}, {});
-  const auto sampler = testing::make_plugin(registry.samplers.get("lattice", {}), {}, uint64_t{4});
+  const auto sampler = test::make_plugin(registry.samplers.get("lattice", {}), {}, uint64_t{4});
   const EmptyWorld world;
   const Echo echo;
   const auto tracer = static_cast<const Integrator&>(echo).tracer(world);

@@ -9,9 +9,9 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
-using testing::RenderSettings;
+using test::channel_mean;
+using test::render_text;
+using test::RenderSettings;
 
 /// All ways in which lights are found.
 constexpr const char* kDirect[] = {

@@ -9,8 +9,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 /// A ball on a floor under a lamp, seen from above; the light of the caustic comes through the ball.
 std::string ball(const std::string& integrator, const std::string& more, const std::string& material,

@@ -8,8 +8,8 @@
 namespace frond {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 /// Two sheets under a lamp and a sky, above a ground: one that reflects and transmits the share `bright`, and one that
 /// reflects and transmits the share `dark`.

@@ -38,7 +38,7 @@ TEST(Scenes, LeavesCoverThePapersShareOfTheView) {
 /// A mean over 4096 pixels whose standard error is known; 5 of them: a false alarm in 1.7 million.
 TEST(Scenes, FurnacesAreWhite) {
   for (const char* path : {"furnace/scene.pbrt", "furnace/transmission.pbrt"}) {
-    const auto [mean, error] = testing::channel_mean(render_scene(path), 1);
+    const auto [mean, error] = test::channel_mean(render_scene(path), 1);
     EXPECT_NEAR(mean, 1, 5 * error + 1e-5) << path;
   }
 }

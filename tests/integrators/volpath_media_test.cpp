@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-using namespace testing;
+using namespace test;
 
 /// Compares two independent estimates. The z-tests, one for each band, use 5 standard errors: a false alarm in 1.7
 /// million for each.

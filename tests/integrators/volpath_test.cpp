@@ -11,7 +11,7 @@
 namespace frond {
 namespace {
 
-using namespace testing;
+using namespace test;
 
 TEST(VolPath, AnAbsorbingLayerTransmitsTheExponential) {
   expect_radiance(

@@ -12,15 +12,15 @@
 namespace frond::test {
 namespace {
 
+using test::number;
 using ::testing::HasSubstr;
-using testing::number;
 
 std::shared_ptr<const Fluorescence> fluorescence_of(std::string_view material, std::vector<ParsedParam> params) {
   Resolver resolver;
   const MaterialInfo& info = material_info(material);
   const auto made = info.make(Params(info, {std::string(material), {}, std::move(params)}, resolver));
   const auto strategy =
-      testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
+      test::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
   ThreadPool pool(2);
   const auto* fluorescent = dynamic_cast<const FluorescentMaterial*>(made.get());
   return fluorescent ? fluorescent->fluorescence({*strategy, pool, silent_log(), {}}) : nullptr;

@@ -13,8 +13,8 @@
 namespace frond::test {
 namespace {
 
+using test::number;
 using ::testing::HasSubstr;
-using testing::number;
 
 constexpr Vec3 kUp{0, 0, 1}, kDown{0, 0, -1};
 
@@ -51,7 +51,7 @@ Pair diffuse_mean(const leaf::TissueParams& params, double lambda_nm, bool back)
 TEST(LeafLambert, TakesBandsHoweverClose) {
   Resolver resolver;
   const WavelengthsInfo& bands = PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("bands", {});
-  const auto strategy = testing::make_plugin(bands, {number("float", "wavelengths", {500, 600, 600.00001, 700, 800})});
+  const auto strategy = test::make_plugin(bands, {number("float", "wavelengths", {500, 600, 600.00001, 700, 800})});
   const MaterialInfo& info = material_info("leaf_lambert");
   const auto leaf = info.make(Params(info, {"", {}, {words("specimen", {"soybean"})}}, resolver));
   ThreadPool pool(1);

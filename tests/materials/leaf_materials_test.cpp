@@ -17,8 +17,8 @@
 namespace frond::test {
 namespace {
 
+using test::number;
 using ::testing::HasSubstr;
-using testing::number;
 
 const ParsedParam kSolve = words("tablemethod", {"solve"});
 
@@ -296,7 +296,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const std::string path = folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,551,.04,.1,.2\n");
   const MaterialInfo& info = material_info("leaf_simplified");
   const auto strategy =
-      testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
+      test::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
   ThreadPool pool(1);
   const ConsoleLog log;
   std::set<std::string_view> named;
@@ -329,7 +329,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
 size_t tables_made(const std::vector<std::vector<ParsedParam>>& leaves) {
   const MaterialInfo& info = material_info("leaf_simplified");
   const auto strategy =
-      testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
+      test::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
   ThreadPool pool(1);
   const ConsoleLog log;
   SharedWork shared;

@@ -34,8 +34,7 @@ TEST(Mix, TakesTwoMaterials) {
 }
 
 TEST(Mix, IsTheWeightedSum) {
-  Ready mix("mix",
-            {words("materials", {"diffuse", "diffusetransmission"}), testing::number("float", "amount", {0.25})});
+  Ready mix("mix", {words("materials", {"diffuse", "diffusetransmission"}), test::number("float", "amount", {0.25})});
   RandomStream rng(1);
   const Vec3 wo = normalize(Vec3{0.3f, 0, 1}), up = normalize(Vec3{0, 0.5f, 1}), down = -up;
   EXPECT_FLOAT_EQ(mix.bsdf().f(wo, up, rng)[0], (0.75f * 0.5f + 0.25f * 0.25f) * kInvPi);

@@ -13,8 +13,8 @@
 namespace frond::test {
 namespace {
 
+using test::number;
 using ::testing::HasSubstr;
-using testing::number;
 
 const leaf::PlateLeaf kPlates{{1.5, 40, 8, 0, 0, 0.01, 0.009}};
 

@@ -47,8 +47,8 @@ class Ready {
     Resolver resolver;
     const MaterialInfo& info = material_info(material);
     material_ = info.make(Params(info, {std::string(material), {}, std::move(params)}, resolver));
-    strategy_ = testing::make_plugin(
-        PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(wavelengths, {}), {});
+    strategy_ =
+        test::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(wavelengths, {}), {});
     material_->prepare({*strategy_, pool_, log_, {}});
     lambda_ = strategy_->sample(0.3f);
   }
@@ -86,7 +86,7 @@ inline void expect_sharing_changes_nothing(std::string_view material, const std:
   const Log& quiet = silent_log();
   for (const char* name : {"smpte", "hero", "meyer", "smpte"}) {
     const auto strategy =
-        testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(name, {}), {});
+        test::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(name, {}), {});
     const auto alone = make();
     alone->prepare({*strategy, pool, quiet, {}});
     together->prepare({*strategy, pool, quiet, {}, &shared});

@@ -15,7 +15,7 @@
 namespace frond {
 namespace {
 
-using testing::SceneRender;
+using test::SceneRender;
 
 /// Requests a stop after a number of reports, as a signal would.
 class StopAfter final : public Progress {
@@ -33,7 +33,7 @@ class StopAfter final : public Progress {
 
 class Adaptive : public ::testing::Test {
  protected:
-  void SetUp() override { scene_ = folder_.write("scene.pbrt", testing::a_scene()); }
+  void SetUp() override { scene_ = folder_.write("scene.pbrt", test::a_scene()); }
 
   LoadedScene load(bool adaptive, uint64_t seed = 1, const std::string& filter = {}) {
     return SceneRender{.seed = seed, .filter = filter, .adaptive = adaptive}.load(session_, scene_);

@@ -13,8 +13,8 @@
 namespace frond {
 namespace {
 
+using test::SceneRender;
 using ::testing::HasSubstr;
-using testing::SceneRender;
 namespace fs = std::filesystem;
 
 TEST(PartLocks, HoldOffOthersUntilTheyAreGone) {
@@ -56,7 +56,7 @@ TEST(PartLocks, AreHeldByOneAtATime) {
 
 class Checkpoints : public ::testing::Test {
  protected:
-  void SetUp() override { scene_ = folder_.write("scene.pbrt", testing::a_scene()); }
+  void SetUp() override { scene_ = folder_.write("scene.pbrt", test::a_scene()); }
 
   TestFolder folder_{"checkpoints"};
   fs::path scene_, path_ = folder_.name_of("a.part");
@@ -138,7 +138,7 @@ TEST_F(Checkpoints, OfARenderAtWorkCanBeGoneOnFrom) {
 TEST_F(Checkpoints, OfAnAdaptiveRenderAreOfOnePlan) {
   // The sky, which needs few samples, comes first: pixels that need more have them before the checkpoint is written
   // there.
-  scene_ = folder_.write("tall.pbrt", testing::a_scene("", 40, 600));
+  scene_ = folder_.write("tall.pbrt", test::a_scene("", 40, 600));
   const LoadedScene scene =
       SceneRender{.wavelengths = "smpte", .channels = {"normal", "position"}, .adaptive = true}.load(session_, scene_);
   const NoiseRequest request{.max_rms = 0.002};

@@ -18,10 +18,10 @@ using ::testing::Not;
 class Gbuffer : public ::testing::Test {
  protected:
   Image render(const std::string& wavelengths = "hero") const {
-    std::string text = testing::a_scene();
+    std::string text = test::a_scene();
     text.replace(text.find("Film \"rgb\""), 10, "Film \"gbuffer\" \"string coordinatesystem\" \"world\"");
     const RenderPart part =
-        testing::SceneRender{.wavelengths = wavelengths}.part(folder_.write("scene.pbrt", text), {0, 16});
+        test::SceneRender{.wavelengths = wavelengths}.part(folder_.write("scene.pbrt", text), {0, 16});
     return film_image(part.film, part.header.image);
   }
   TestFolder folder_{"gbuffer"};

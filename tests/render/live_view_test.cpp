@@ -14,12 +14,12 @@
 namespace frond {
 namespace {
 
+using test::SceneRender;
+using test::TevListener;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::SceneRender;
 using ::testing::SizeIs;
-using testing::TevListener;
 
 class KeptLog final : public Log {
  public:
@@ -80,7 +80,7 @@ Image image_of(const RenderPart& part) {
 
 class LiveViews : public ::testing::Test {
  protected:
-  void SetUp() override { scene_ = folder_.write("scene.pbrt", testing::a_scene()); }
+  void SetUp() override { scene_ = folder_.write("scene.pbrt", test::a_scene()); }
   void render(const LoadedScene& scene, RenderPart& part, uint64_t samples = 16) {
     session_.render(scene, SampleRange{0, samples}, part);
   }

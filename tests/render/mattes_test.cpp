@@ -15,7 +15,7 @@
 namespace frond {
 namespace {
 
-using testing::SceneRender;
+using test::SceneRender;
 
 /// Black disks before a sky of radiance 1: two instances of "leaf" in "plant", and one shape outside of objects.
 constexpr const char* kDisks = R"(
@@ -192,7 +192,7 @@ TEST_F(Mattes, AHiddenBackgroundLights) {
 /// Four wavelengths of a sample have a colour outside the space of R, G and B; so do samples of a saturated surface.
 TEST(AlbedoChannel, LiesBetween0And1) {
   const TestFolder folder("albedo");
-  std::string text = testing::a_scene();
+  std::string text = test::a_scene();
   text.replace(text.find("[.2 .5 .1]"), 10, "[ 0 .99 0]");
   const RenderPart part = SceneRender{.channels = {"albedo", "Albedo"}}.part(folder.write("scene.pbrt", text), {0, 1});
   const Image image = film_image(part.film, part.header.image);

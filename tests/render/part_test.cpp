@@ -23,8 +23,8 @@ using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
-using testing::a_scene;
-using testing::SceneRender;
+using test::a_scene;
+using test::SceneRender;
 
 const std::vector<std::string> kAllChannels{"albedo", "normal", "depth", "position", "material", "instance", "samples"};
 const std::vector<std::string> kChannelsOfBands{"normal", "depth", "position", "material", "instance", "samples"};
@@ -198,12 +198,12 @@ TEST_F(Parts, OfOtherRendersAreRefusedByWhatDiffers) {
 
 TEST_F(Parts, OfChangedFilesAreRefusedByTheirNames) {
   const std::string with_mesh = a_scene("Shape \"plymesh\" \"string filename\" \"triangle.ply\"\n");
-  folder_.write("triangle.ply", testing::triangle(0.5));
+  folder_.write("triangle.ply", test::triangle(0.5));
   folder_.write("scene.pbrt", with_mesh);
   const RenderPart first = part({0, 2});
-  folder_.write("triangle.ply", testing::triangle(0.25));
+  folder_.write("triangle.ply", test::triangle(0.25));
   EXPECT_THAT(refusal(first, part({2, 4})), HasSubstr("file triangle.ply: "));
-  folder_.write("triangle.ply", testing::triangle(0.5));
+  folder_.write("triangle.ply", test::triangle(0.5));
   EXPECT_EQ(refusal(first, part({2, 4})), "");
   folder_.write("scene.pbrt", with_mesh + "# other\n");
   EXPECT_THAT(refusal(first, part({2, 4})), HasSubstr("scene: "));

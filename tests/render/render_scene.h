@@ -8,7 +8,7 @@
 #include "render/session.h"
 #include "scene/format/words.h"
 
-namespace frond::testing {
+namespace frond::test {
 
 /// A sphere, a panel and much empty sky, 40 x 27 pixels: tiles at the right and below are not whole.
 inline std::string a_scene(const std::string& more = "", int width = 40, int height = 27) {
@@ -74,4 +74,4 @@ struct SceneRender {
   }
 };
 
-}  // namespace frond::testing
+}  // namespace frond::test

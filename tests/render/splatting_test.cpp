@@ -16,13 +16,13 @@
 namespace frond {
 namespace {
 
-using testing::a_scene;
-using testing::number;
-using testing::SceneRender;
+using test::a_scene;
+using test::number;
+using test::SceneRender;
 
 std::unique_ptr<Filter> make(std::string_view name, std::vector<ParsedParam> params = {}) {
   const Registry registry = make_registry({}, {});
-  return testing::make_plugin(registry.filters.get(name, {}), std::move(params));
+  return test::make_plugin(registry.filters.get(name, {}), std::move(params));
 }
 
 std::unique_ptr<Filter> make(std::string_view name, double radius) {

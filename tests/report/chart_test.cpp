@@ -29,7 +29,7 @@ Chart chart_of(const Series& s) { return {1, {{400, 300, "", {"x (m)", {0, 1}}, 
 
 std::string svg_of(const Chart& chart) {
   const std::string svg = chart_svg(chart);
-  EXPECT_EQ(testing::xml_error(svg), "") << svg;
+  EXPECT_EQ(test::xml_error(svg), "") << svg;
   return svg;
 }
 

@@ -18,10 +18,10 @@
 namespace frond {
 namespace {
 
+using test::number;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::number;
 namespace fs = std::filesystem;
 
 /// Finds files under their own name.

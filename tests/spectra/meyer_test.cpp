@@ -13,7 +13,7 @@ namespace {
 
 std::unique_ptr<WavelengthStrategy> make_meyer(const std::string& white) {
   const WavelengthsInfo& info = PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("meyer", {});
-  return testing::make_plugin(info, {{"string", "white", {}, {}, std::vector<std::string>{white}}});
+  return test::make_plugin(info, {{"string", "white", {}, {}, std::vector<std::string>{white}}});
 }
 
 /// His matrix from XYZ to the opponent space.

@@ -20,12 +20,11 @@ using ::testing::HasSubstr;
 std::unique_ptr<WavelengthStrategy> make(std::string_view name, const std::vector<ParsedParam>& params = {}) {
   const PluginTable<WavelengthsInfo> table("wavelengths", builtin_wavelengths());
   const WavelengthsInfo& info = table.get(name, {});
-  return testing::make_plugin(info, params);
+  return test::make_plugin(info, params);
 }
 
 std::unique_ptr<WavelengthStrategy> make_hero(double min_nm, double max_nm) {
-  return make("hero",
-              {testing::number("float", "lambdamin", {min_nm}), testing::number("float", "lambdamax", {max_nm})});
+  return make("hero", {test::number("float", "lambdamin", {min_nm}), test::number("float", "lambdamax", {max_nm})});
 }
 
 TEST(Smpte, WhiteUnderD65IsWhite) {
@@ -49,7 +48,7 @@ TEST(Smpte, CarriesThePapersThreeWavelengths) {
 }
 
 TEST(Smpte, TakesOtherWavelengthsInWhichWhiteIsWhiteToo) {
-  const auto smpte = make("smpte", {testing::number("float", "blue", {464.7}), testing::number("float", "red", {400})});
+  const auto smpte = make("smpte", {test::number("float", "blue", {464.7}), test::number("float", "red", {400})});
   const SampledWavelengths lambda = smpte->sample(0);
   EXPECT_THAT(smpte->fixed_nm(), ::testing::ElementsAre(400, 551, 464.7f));
   EXPECT_EQ(smpte->range_nm().min, 400);
@@ -171,7 +170,7 @@ TEST(CheckRange, LightsThatEndTooSoonAreToldWhatReachesFurther) {
 }
 
 TEST(Registry, EveryStrategyReadsWhatItDeclaresAndSaysWhereItComesFrom) {
-  testing::NoLookups resolver;
+  test::NoLookups resolver;
   for (const WavelengthsInfo* info : builtin_wavelengths()) {
     const Params params(*info, {std::string(info->name), {}, {}}, resolver);
     info->make(params);

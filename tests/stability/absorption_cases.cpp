@@ -15,8 +15,8 @@ using leaf::find_specimen;
 using leaf::Tissue;
 using leaf::TissueModel;
 using leaf::TissueParams;
+using test::number;
 using test::words;
-using testing::number;
 
 const std::vector<double> kAngles{10, 75, 89.99, 140};
 

@@ -7,8 +7,8 @@ namespace frond::stability {
 namespace {
 
 using test::flag;
+using test::number;
 using test::words;
-using testing::number;
 
 /// Unit vector with the z coordinate `z`.
 Vec3 at_height(float z, float phi) {

@@ -9,8 +9,8 @@
 namespace frond::stability {
 namespace {
 
+using test::number;
 using test::words;
-using testing::number;
 
 constexpr int64_t kRays = 400;
 

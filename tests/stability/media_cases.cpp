@@ -8,8 +8,8 @@
 namespace frond::stability {
 namespace {
 
-using testing::channel_mean;
-using testing::render_text;
+using test::channel_mean;
+using test::render_text;
 
 const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
 constexpr int kSamples = 256;

@@ -11,8 +11,8 @@ namespace {
 
 using leaf::find_specimen;
 using leaf::TissueParams;
+using test::number;
 using test::words;
-using testing::number;
 
 using Number = const leaf::LeafNumber*;
 

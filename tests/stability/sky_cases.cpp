@@ -88,7 +88,7 @@ Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indi
 )",
                                         light(c.params));
   constexpr int kSamples = 64;
-  const Film film = testing::render_text(scene, {.samples = kSamples, .wavelengths = "bands,wavelengths=550"});
+  const Film film = test::render_text(scene, {.samples = kSamples, .wavelengths = "bands,wavelengths=550"});
   double mean = 0, error2 = 0;
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {

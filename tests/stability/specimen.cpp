@@ -13,8 +13,8 @@ using leaf::Fate;
 using leaf::Shares;
 using leaf::TissueParams;
 using test::flag;
+using test::number;
 using test::words;
-using testing::number;
 
 namespace {
 

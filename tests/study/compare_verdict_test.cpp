@@ -123,7 +123,7 @@ TEST(Figures, AreWrittenWithoutExponents) {
 
 TEST(CurvesChart, MarksTheBiasOfTheBiased) {
   const std::string svg = chart_svg(curves_chart(two(), Measure::rms_all).value());
-  EXPECT_EQ(testing::xml_error(svg), "");
+  EXPECT_EQ(test::xml_error(svg), "");
   EXPECT_THAT(svg, ::testing::AllOf(HasSubstr(">fast<"), HasSubstr(">bias 0.01, from 200 s on<")));
   EXPECT_THAT(svg, HasSubstr(">slow<"));
 }

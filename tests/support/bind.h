@@ -4,7 +4,7 @@
 #include "core/params.h"
 #include "core/texture.h"
 
-namespace frond::testing {
+namespace frond::test {
 
 /// For plugins whose parameters refer to nothing.
 class NoLookups final : public ParamResolver {
@@ -30,4 +30,4 @@ auto make_plugin(const Info& info, std::vector<ParsedParam> params, const Args&.
   return info.make(Params(info, {std::string(info.name), {}, std::move(params)}, none), args...);
 }
 
-}  // namespace frond::testing
+}  // namespace frond::test

@@ -10,7 +10,7 @@
 #include "scene/overrides.h"
 #include "scene/scene.h"
 
-namespace frond::testing {
+namespace frond::test {
 
 struct RenderSettings {
   int samples = 16;
@@ -52,4 +52,4 @@ inline ChannelMean channel_mean(const Film& film, size_t channel) {
   return {sum / n, std::sqrt(variance) / n};
 }
 
-}  // namespace frond::testing
+}  // namespace frond::test

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-namespace frond::testing {
+namespace frond::test {
 
 /// A port of this machine, bound by a socket; nobody listens there until `listen`.
 class Port {
@@ -223,4 +223,4 @@ class TevListener {
   std::thread thread_;
 };
 
-}  // namespace frond::testing
+}  // namespace frond::test

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace frond::testing {
+namespace frond::test {
 
 /// Returns the first error in the nesting, the entities or the attributes of an XML text without comments and
 /// declarations; "" if it is well-formed.
@@ -33,4 +33,4 @@ inline std::string xml_error(std::string_view xml) {
   return open.empty() ? "" : "<" + open.back() + "> is not closed";
 }
 
-}  // namespace frond::testing
+}  // namespace frond::test

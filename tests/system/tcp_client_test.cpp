@@ -11,9 +11,9 @@
 namespace frond {
 namespace {
 
+using test::Port;
+using test::TevListener;
 using ::testing::HasSubstr;
-using testing::Port;
-using testing::TevListener;
 
 TEST(ServerAddresses, AreHostsAndPorts) {
   for (const char* text : {"localhost:14158", "127.0.0.1:1", "host-1.example.org:65535", "[::1]:14158"})

@@ -19,13 +19,13 @@ extern const SpectrumTextureInfo image_spectrum_texture, soil_spectrum_texture;
 
 namespace {
 
-using testing::make_plugin;
-using testing::number;
+using test::make_plugin;
+using test::number;
 
 TextureMapping mapping_of(std::vector<ParsedParam> params, const Transform& world_from_texture = {}) {
   static constexpr std::span<const Param> kParams = kMappingParams;
   static constexpr PluginInfo kInfo{"test", "mapping", "", "", kParams};
-  testing::NoLookups none;
+  test::NoLookups none;
   return {Params(kInfo, {"mapping", {}, std::move(params)}, none), {world_from_texture}};
 }
 
