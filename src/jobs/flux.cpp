@@ -7,16 +7,16 @@
 #include <limits>
 #include <list>
 
-#include "jobs/support/flux_energy.h"
-#include "jobs/support/flux_light.h"
-#include "jobs/support/flux_parts.h"
-#include "jobs/support/flux_tables.h"
+#include "jobs/flux/flux_energy.h"
+#include "jobs/flux/flux_light.h"
+#include "jobs/flux/flux_parts.h"
+#include "jobs/flux/flux_tables.h"
+#include "jobs/flux/time_series.h"
 #include "jobs/support/provenance.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/refine.h"
 #include "jobs/support/scene_fluorescence.h"
 #include "jobs/support/time_limit.h"
-#include "jobs/support/time_series.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/instance_errors.h"
 #include "radiometry/radiometer_scene.h"

@@ -13,24 +13,11 @@
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
 #include "radiometry/trace_blocks.h"
-#include "scene/geometry/shape_emitter.h"
 #include "scene/leaf_models.h"
 #include "system/machine.h"
 
 namespace frond {
 namespace {
-
-/// Returns the materials of surfaces, without those that have none, as "interface".
-std::vector<uint32_t> reflectors_of(const Scene& scene) {
-  const SampledWavelengths lambda = scene.wavelengths().sample(0.5f);
-  const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}, {}}};
-  std::vector<uint32_t> materials = scene.geometry().materials();
-  std::erase_if(materials, [&](uint32_t m) {
-    Arena arena;
-    return !scene.material(m) || !scene.material(m)->evaluate(hit, lambda, arena);
-  });
-  return materials;
-}
 
 std::string name_of(const MaterialDescription& material) {
   return material.name.empty() ? material.plugin.name : material.name;
@@ -81,15 +68,6 @@ MeanError organ_mean(const Moment& moment, uint64_t paths) {
   MeanError mean = moment.mean(paths);
   if (moment.sum == 0) mean.standard_error = NAN;
   return mean;
-}
-
-/// Returns the one-sided areas of materials by index, NaN for those of instances: their areas are measured one by one.
-std::vector<double> areas_of_materials(const Geometry& geometry, size_t materials) {
-  std::vector<double> areas(materials);
-  geometry.visit_surfaces([&](const Surface& surface, const AffineMap&, uint64_t instance) {
-    areas[surface.material] += instance > 0 ? std::numeric_limits<double>::quiet_NaN() : ShapeEmitter(surface).area();
-  });
-  return areas;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/fluorescence.h"
 #include "core/log.h"
 #include "scene/format/plugin_text.h"
+#include "scene/geometry/shape_emitter.h"
 #include "scene/geometry_builder.h"
 #include "scene/scene_options.h"
 
@@ -162,6 +163,25 @@ void check_target(const Scene& scene, const Target& target) {
   if (is_beside && !scene.period())
     fail({}, "the target lies beside the scene, which reaches from ({:.10g}, {:.10g}) to ({:.10g}, {:.10g})", b.min.x,
          b.min.y, b.max.x, b.max.y);
+}
+
+std::vector<uint32_t> reflectors_of(const Scene& scene) {
+  const SampledWavelengths lambda = scene.wavelengths().sample(0.5f);
+  const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}, {}}};
+  std::vector<uint32_t> materials = scene.geometry().materials();
+  std::erase_if(materials, [&](uint32_t m) {
+    Arena arena;
+    return !scene.material(m) || !scene.material(m)->evaluate(hit, lambda, arena);
+  });
+  return materials;
+}
+
+std::vector<double> areas_of_materials(const Geometry& geometry, size_t materials) {
+  std::vector<double> areas(materials);
+  geometry.visit_surfaces([&](const Surface& surface, const AffineMap&, uint64_t instance) {
+    areas[surface.material] += instance > 0 ? std::numeric_limits<double>::quiet_NaN() : ShapeEmitter(surface).area();
+  });
+  return areas;
 }
 
 double bottom_of(const Scene& scene) { return file_bounds(scene).min.z; }

@@ -36,6 +36,11 @@ Target default_target(const Scene& scene, const Log& log);
 /// Throws InputError for a target too far away for Embree, or beside the bounds of a scene that is not periodic.
 void check_target(const Scene& scene, const Target& target);
 
+/// Returns the materials of surfaces, without those that have none, as "interface".
+std::vector<uint32_t> reflectors_of(const Scene& scene);
+/// Returns the one-sided areas of materials by index, NaN for those of instances: their areas are measured one by one.
+std::vector<double> areas_of_materials(const Geometry& geometry, size_t materials);
+
 /// Returns the least z of the scene.
 double bottom_of(const Scene& scene);
 

@@ -69,7 +69,12 @@ const std::map<std::string, Layers> kAllowedInside{
     {"instruments", {{"errors", {}}, {"", {"errors"}}, {"conformance", {"", "errors"}}}},
     {"exports", {{"", {}}, {"mitsuba", {""}}}},
     {"study", {{"", {}}, {"compare", {""}}, {"compare/report", {"compare", ""}}, {"choose", {""}}}},
-    {"jobs", {{"record", {}}, {"support", {"record"}}, {"submit", {"support"}}, {"", {"record", "support", "submit"}}}},
+    {"jobs",
+     {{"record", {}},
+      {"support", {"record"}},
+      {"submit", {"support"}},
+      {"flux", {"record", "support"}},
+      {"", {"record", "support", "submit", "flux"}}}},
 };
 
 struct Include {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "jobs/support/energy_tables.h"
+#include "jobs/flux/energy_tables.h"
 #include "report/polar_map.h"
 #include "system/atomic_file.h"
 

@@ -1,4 +1,4 @@
-#include "jobs/support/time_series.h"
+#include "jobs/flux/time_series.h"
 
 #include <fmt/ranges.h>
 

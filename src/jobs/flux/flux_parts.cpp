@@ -1,4 +1,4 @@
-#include "jobs/support/flux_parts.h"
+#include "jobs/flux/flux_parts.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "jobs/support/flux_tables.h"
+#include "jobs/flux/flux_tables.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "jobs/support/energy_tables.h"
+#include "jobs/flux/energy_tables.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "jobs/support/flux_tables.h"
+#include "jobs/flux/flux_tables.h"
 
 namespace frond {
 namespace {

@@ -1,4 +1,4 @@
-#include "jobs/support/flux_light.h"
+#include "jobs/flux/flux_light.h"
 
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"

@@ -1,4 +1,4 @@
-#include "jobs/support/flux_energy.h"
+#include "jobs/flux/flux_energy.h"
 
 #include "leaf/tissue/constants.h"
 #include "scene/leaf_models.h"

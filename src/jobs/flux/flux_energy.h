@@ -2,8 +2,8 @@
 
 #include <list>
 
+#include "jobs/flux/energy_tables.h"
 #include "jobs/record/common_params.h"
-#include "jobs/support/energy_tables.h"
 #include "system/file_uses.h"
 
 /// The job flux by energy (--bands): from its arguments to its result.
