@@ -123,7 +123,7 @@ def table(leaf: str | os.PathLike | Sequence[str | os.PathLike] | None = None, s
     equalsides: Write the mean of both sides, at angles up to 90 degrees.
     output: File to write; - is standard output. FILE.leaf, of a mode table: for other programs (docs/file_formats.md)."""
 
-def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
+def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, part: str | os.PathLike | None = None, samples: float | Sequence[float] | str | None = None, merge: str | os.PathLike | Sequence[str | os.PathLike] | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
     Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal, or incident=light if their model is a random walk.
@@ -138,12 +138,12 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     paths: Number of paths for each view, rounded up to a multiple of 32; at least 32 for each wavelength are traced. Range: from 1 to 4294967296. Default: 65536.
     rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0, up to 1.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
-    fluorescence: Measure the radiance of fluorescence instead, and the share of it that escapes from the canopy. Excludes wavelengths, compare.
+    fluorescence: Measure the radiance of fluorescence instead, and the share of it that escapes from the canopy. Excludes wavelengths, compare, part, merge.
     emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
-    compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume. Repeatable.
+    compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume, part, merge. Repeatable.
     reference: Reference leaf model of compare; by default the exact model without noise. Needs compare.
     within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02. Needs compare.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
@@ -152,12 +152,15 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     json: JSON file to write; - is standard output.
     provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
     plot: Chart against the zenith angle, or maps of a hemisphere: .svg or .png.
-    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
-    resume: Resume from CSV.part if it exists; write one too. Needs csv.
+    part: Write the sums over the paths of samples instead of a result, to be combined with merge. Excludes csv, json, plot, rms.
+    samples: Range of the paths to measure, without END, as in 0:500000. Both ends are rounded down to whole blocks of paths. Needs part.
+    merge: Part of this measurement, written by part: return the result of all parts. The other options must be those of the parts. Excludes part, rms, time_limit, checkpoint, resume. Repeatable.
+    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP; with part in FILE.checkpoint. Unit: s. Range: above 0.
+    resume: Resume from CSV.part, or the file of part, if it exists; write one too.
 
     Returns the job's table."""
 
-def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, times: str | os.PathLike | None = None, bands: str | os.PathLike | None = None, optics_range: float | Sequence[float] | str | None = None, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, sides: bool = False, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, ply: str | os.PathLike | None = None, provenance: bool = False, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', *, by: str | os.PathLike | None = None, times: str | os.PathLike | None = None, bands: str | os.PathLike | None = None, optics_range: float | Sequence[float] | str | None = None, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, sides: bool = False, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, ply: str | os.PathLike | None = None, provenance: bool = False, part: str | os.PathLike | None = None, samples: float | Sequence[float] | str | None = None, merge: str | os.PathLike | Sequence[str | os.PathLike] | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
     """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
     "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
 
@@ -176,7 +179,7 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
 
     times: a table of times as a file, a data frame with a column or an index of times, or a dictionary of columns. The tables then
     have a column "time", and their rows of PAR "par_umol_m2_s"; the sums of each day are a table of
-    run("flux", ...).tables["flux_days"].
+    run("flux", ...).tables["flux_days"]. With part= nothing is returned.
 
     Measure the light budget of a scene: reflection, transmission, absorption.
 
@@ -196,9 +199,9 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     by: Measure the absorption of each instance of an object, mesh, connected part of a mesh, triangle or material, one row each; the other tables are then in files beside that of csv: leaves-flux.csv beside leaves.csv. One of instance, mesh, part, triangle, material.
     instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances, or other rows of by, is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0, up to 1. Needs by.
     irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global. Unit: W/(m2 nm).
-    fluorescence: Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward. Excludes wavelengths, bands, sides, rms, instance_error, irradiance, checkpoint, resume.
+    fluorescence: Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward. Excludes wavelengths, bands, sides, rms, instance_error, irradiance, checkpoint, resume, part, merge.
     emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
-    times: Table of times (CSV): measure the scene under the light of each, with one load of the scene. Columns: time (2026-06-21T11:00+02:00); latitude and longitude, or sun_zenith and sun_azimuth from north to east; ghi, dhi, dni (W/m2); any parameter of LightSource "sky", or of the scene's only LightSource. Excludes checkpoint, resume, ply, fluorescence.
+    times: Table of times (CSV): measure the scene under the light of each, with one load of the scene. Columns: time (2026-06-21T11:00+02:00); latitude and longitude, or sun_zenith and sun_azimuth from north to east; ghi, dhi, dni (W/m2); any parameter of LightSource "sky", or of the scene's only LightSource. Excludes ply, fluorescence.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
@@ -207,8 +210,11 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     json: JSON file to write; - is standard output.
     ply: PLY file to write: meshes whose faces have the light that each row of by absorbs for each unit of its area, as properties, and as colours in the first band. Needs bands.
     provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
-    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
-    resume: Resume from CSV.part if it exists; write one too. Needs csv."""
+    part: Write the sums over the paths of samples instead of a result, to be combined with merge. Excludes csv, json, ply, rms, instance_error.
+    samples: Range of the paths to measure, without END, as in 0:500000. Both ends are rounded down to whole blocks of paths. Needs part.
+    merge: Part of this measurement, written by part: return the result of all parts. The other options must be those of the parts. Excludes part, rms, instance_error, time_limit, checkpoint, resume. Repeatable.
+    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP; with part in FILE.checkpoint. Unit: s. Range: above 0.
+    resume: Resume from CSV.part, or the file of part, if it exists; write one too."""
 
 def structure(scene: str | os.PathLike | Scene, zenith: float | Sequence[float] | str = '0:80:10', azimuth: float | Sequence[float] | str | None = None, *, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, sun: float | Sequence[float] | str | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, rays: int = 100000, rms: float | None = None, time_limit: float | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Measure the structure of a canopy: leaf area, gap fraction, clumping, sunlit leaves.
@@ -436,7 +442,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     scene: Scene file.
     output: Image that the merge writes.
     spp: Number of samples per pixel. Range: from 1 to 1073741824.
-    tasks: Number of tasks, among which the samples are divided. Range: from 1 to 1000000.
+    tasks: Number of tasks, among which the samples or paths are divided. Range: from 1 to 1000000.
     engine: Program that schedules the tasks: Slurm, Open Job Description, or Snakemake. One of slurm, openjd, snakemake.
     slurm: The same as engine slurm. Excludes engine.
     run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake, whose output quiet writes to FOLDER/ENGINE.log.
@@ -472,6 +478,87 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     json: JSON file to write; - is standard output."""
+
+def submit_brf(scene: str | os.PathLike, paths: int, tasks: int, *, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: float | Sequence[float] | str = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, rms: float | None = None, time_limit: float | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | os.PathLike | Sequence[str | os.PathLike] | None = None, reference: str | os.PathLike | None = None, within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, provenance: bool = False, plot: str | os.PathLike | None = None, part: str | os.PathLike | None = None, samples: float | Sequence[float] | str | None = None, merge: str | os.PathLike | Sequence[str | os.PathLike] | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> Result:
+    """Write a job that measures a bidirectional reflectance factor by ranges of paths, and merges them, as frond submit does.
+
+    The options of frond brf are passed on to the tasks, the outputs to the merge.
+
+    scene: Scene file.
+    paths: Number of paths, as of the measurement: in total, or for each view.
+    tasks: Number of tasks, among which the samples or paths are divided. Range: from 1 to 1000000.
+    engine: Program that schedules the tasks: Slurm, Open Job Description, or Snakemake. One of slurm, openjd, snakemake.
+    slurm: The same as engine slurm. Excludes engine.
+    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake, whose output quiet writes to FOLDER/ENGINE.log.
+    folder: Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
+    zenith: Zenith angles of the views; negative angles are on the sun's side, if there is one sun. Unit: degrees. Default: -75:75:5.
+    azimuth: Azimuths of the views from the sun's plane; from +x toward +y if there is not exactly one sun. Unit: degrees. Default: 0.
+    hemisphere: Views of the whole hemisphere, every 5 degrees of zenith and 15 of azimuth. Excludes zenith, azimuth.
+    target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
+    period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
+    rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0, up to 1.
+    time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
+    fluorescence: Measure the radiance of fluorescence instead, and the share of it that escapes from the canopy. Excludes wavelengths, compare, part, merge.
+    emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
+    integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
+    seed: Seed of all random numbers.
+    compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume, part, merge. Repeatable.
+    reference: Reference leaf model of compare; by default the exact model without noise. Needs compare.
+    within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02. Needs compare.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
+    strict: Treat warnings as errors.
+    csv: CSV file to write; - is standard output.
+    json: JSON file to write; - is standard output.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
+    plot: Chart against the zenith angle, or maps of a hemisphere: .svg or .png.
+    part: Write the sums over the paths of samples instead of a result, to be combined with merge. Excludes csv, json, plot, rms.
+    samples: Range of the paths to measure, without END, as in 0:500000. Both ends are rounded down to whole blocks of paths. Needs part.
+    merge: Part of this measurement, written by part: return the result of all parts. The other options must be those of the parts. Excludes part, rms, time_limit, checkpoint, resume. Repeatable.
+    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP; with part in FILE.checkpoint. Unit: s. Range: above 0.
+    resume: Resume from CSV.part, or the file of part, if it exists; write one too."""
+
+def submit_flux(scene: str | os.PathLike, paths: int, tasks: int, *, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: float | Sequence[float] | str = '450,550,670,800', bands: str | os.PathLike | None = None, optics_range: float | Sequence[float] | str | None = None, material: str | os.PathLike | Sequence[str | os.PathLike] | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, sides: bool = False, rms: float | None = None, time_limit: float | None = None, by: str | os.PathLike | None = None, instance_error: float | None = None, irradiance: str | os.PathLike | None = None, fluorescence: bool = False, emission: float | Sequence[float] | str = '685,740,760', times: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, ply: str | os.PathLike | None = None, provenance: bool = False, part: str | os.PathLike | None = None, samples: float | Sequence[float] | str | None = None, merge: str | os.PathLike | Sequence[str | os.PathLike] | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> Result:
+    """Write a job that measures the light budget of a scene by ranges of light paths, and merges them, as frond submit does.
+
+    The options of frond flux are passed on to the tasks, the outputs to the merge.
+
+    scene: Scene file.
+    paths: Number of paths, as of the measurement: in total, or for each view.
+    tasks: Number of tasks, among which the samples or paths are divided. Range: from 1 to 1000000.
+    engine: Program that schedules the tasks: Slurm, Open Job Description, or Snakemake. One of slurm, openjd, snakemake.
+    slurm: The same as engine slurm. Excludes engine.
+    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake, whose output quiet writes to FOLDER/ENGINE.log.
+    folder: Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
+    bands: Measure energy and photons of these bands, direct and diffuse light apart, and sunlit and shaded leaves: par (400 to 700 nm), nir (700 to 1100 nm), shortwave (300 to 2500 nm), all: these three, or NAME=FIRST:LAST in nm. Excludes wavelengths.
+    optics_range: Wavelengths for which the optics of all surfaces are known: light beyond them meets the optics at the ends. By default 360 to 2500 nm if the scene has leaf models, else all wavelengths of the bands. Unit: nm. Needs bands.
+    material: Material whose surfaces count as leaves, by its name in the scene; by default all leaf models. Needs bands. Repeatable.
+    target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
+    period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
+    sides: Light also enters through the sides of the box between the target and the bottom of the scene: for plants that stand alone. Shares remain relative to the light through the target, and may exceed 1.
+    rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0, up to 1.
+    time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
+    by: Measure the absorption of each instance of an object, mesh, connected part of a mesh, triangle or material, one row each; the other tables are then in files beside that of csv: leaves-flux.csv beside leaves.csv. One of instance, mesh, part, triangle, material.
+    instance_error: Relative standard error (0.05 or 5%): stop when the median over the instances, or other rows of by, is below this, of the PAR photons that each absorbs, or without PAR of the light in the worst band; paths is then not used. Range: above 0, up to 1. Needs by.
+    irradiance: Spectral irradiance of a horizontal plane, by which bands with responses are weighted, and photons: name of a spectrum, a spectrum file, or scene: that of the scene's lights. By default bands have that of the scene; photons, which need a unit, have it if all lights are sky, or else solar-am1.5-global. Unit: W/(m2 nm).
+    fluorescence: Count the photons of fluorescence instead: excited, emitted, reabsorbed, escaping upward. Excludes wavelengths, bands, sides, rms, instance_error, irradiance, checkpoint, resume, part, merge.
+    emission: Wavelengths of emission, with fluorescence. Unit: nm. Range: from 640 to 850. Default: 685,740,760. Needs fluorescence.
+    times: Table of times (CSV): measure the scene under the light of each, with one load of the scene. Columns: time (2026-06-21T11:00+02:00); latitude and longitude, or sun_zenith and sun_azimuth from north to east; ghi, dhi, dni (W/m2); any parameter of LightSource "sky", or of the scene's only LightSource. Excludes ply, fluorescence.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
+    seed: Seed of all random numbers.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
+    strict: Treat warnings as errors.
+    csv: CSV file to write; - is standard output.
+    json: JSON file to write; - is standard output.
+    ply: PLY file to write: meshes whose faces have the light that each row of by absorbs for each unit of its area, as properties, and as colours in the first band. Needs bands.
+    provenance: Begin CSV files with comment lines: version, command, seed, and hash of the scene. JSON always has them. Needs csv.
+    part: Write the sums over the paths of samples instead of a result, to be combined with merge. Excludes csv, json, ply, rms, instance_error.
+    samples: Range of the paths to measure, without END, as in 0:500000. Both ends are rounded down to whole blocks of paths. Needs part.
+    merge: Part of this measurement, written by part: return the result of all parts. The other options must be those of the parts. Excludes part, rms, instance_error, time_limit, checkpoint, resume. Repeatable.
+    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP; with part in FILE.checkpoint. Unit: s. Range: above 0.
+    resume: Resume from CSV.part, or the file of part, if it exists; write one too."""
 
 def merge(parts: str | os.PathLike | Sequence[str | os.PathLike], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: float | str | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Merge parts of a render, written by frond render --part.

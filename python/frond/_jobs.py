@@ -101,7 +101,7 @@ class Result:
 
     @property
     def table(self):
-        return _table(next(iter(self.columns.values())), self.provenance)
+        return _table(next(iter(self.columns.values())), self.provenance) if self.columns else None
 
     def to_xarray(self, *tables):
         """Returns the first table, or those named, as an xarray.Dataset with the attributes of the CF conventions: dimensions,

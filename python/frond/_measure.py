@@ -105,11 +105,11 @@ def flux(scene, wavelengths=None, *, by=None, times=None, **options):
 
     times: a table of times as a file, a data frame with a column or an index of times, or a dictionary of columns. The tables then
     have a column "time", and their rows of PAR "par_umol_m2_s"; the sums of each day are a table of
-    run("flux", ...).tables["flux_days"]."""
+    run("flux", ...).tables["flux_days"]. With part= nothing is returned."""
     with table_file(times, "times") as path:
         tables = FUNCTIONS["flux"](scene, wavelengths, by=by, times=path, **options).tables
-    if options.get("bands") is not None:
-        return tables
+    if options.get("bands") is not None or not tables:
+        return tables or None
     first = "fluorescence" if options.get("fluorescence") else "flux"
     return tables[first] if by is None else (tables[first], next(tables[name] for name in tables if name != first))
 

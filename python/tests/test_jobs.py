@@ -51,7 +51,7 @@ def section(page, name):
 
 def own(name, param):
     """Not of the job that this one extends, which the page names in one line."""
-    return name != "submit" or param["name"] in ("scene", "output", "spp", "tasks", "engine", "slurm", "run", "folder")
+    return not name.startswith("submit") or param["name"] in ("scene", "output", "spp", "paths", "tasks", "engine", "slurm", "run", "folder")
 
 
 @pytest.mark.parametrize("name, param", PARAMS, ids=IDS)

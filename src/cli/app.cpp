@@ -244,6 +244,10 @@ std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const*
   const CLI::App& render = *app.get_subcommand("render");
   std::vector<std::string> words = translate_pbrt_options({argv + 1, argv + argc}, long_names(render));
   if (!words.empty() && words[0] == "help") words = {words.size() > 1 ? words[1] : "--help", "--help"};
+  // "submit flux" is the command submit-flux.
+  if (words.size() > 1 &&
+      std::ranges::any_of(all_jobs(), [&words](const JobInfo* job) { return job->name == words[0] + "-" + words[1]; }))
+    words[1] = words[0] + "-" + words[1], words.erase(words.begin());
   std::ranges::reverse(words);  // CLI11 reads the words from the end
   try {
     app.parse(std::move(words));

@@ -8,7 +8,6 @@
 #include <list>
 
 #include "jobs/flux/flux_energy.h"
-#include "jobs/flux/flux_light.h"
 #include "jobs/flux/flux_parts.h"
 #include "jobs/flux/flux_tables.h"
 #include "jobs/flux/time_series.h"

@@ -27,6 +27,8 @@ extern const JobInfo kRenderJob;
 extern const JobInfo kSpectrophotometerJob;
 extern const JobInfo kStructureJob;
 extern const JobInfo kSubmitJob;
+extern const JobInfo kSubmitBrfJob;
+extern const JobInfo kSubmitFluxJob;
 extern const JobInfo kTableJob;
 
 std::span<const JobInfo* const> all_jobs() {
@@ -52,6 +54,8 @@ std::span<const JobInfo* const> all_jobs() {
       &kConvertJob,
       &kDifferenceJob,  // Images
       &kSubmitJob,
+      &kSubmitBrfJob,
+      &kSubmitFluxJob,
       &kMergeJob,  // Cluster
       &kManJob,
       &kCompletionJob,  // Shell

@@ -467,16 +467,4 @@ EnergyBudget FluxMeter::read_energy() const {
   return budget;
 }
 
-double FluxMeasurement::error() const {
-  double squares = 0;
-  size_t count = 0;
-  const auto add = [&](const std::vector<MeanError>& shares) {
-    for (const MeanError& s : shares) squares += s.standard_error * s.standard_error, ++count;
-  };
-  add(reflected);
-  for (const OfMaterial& m : materials)
-    if (m.is_hit) add(m.absorbed);
-  return count == 0 ? 0 : std::sqrt(squares / double(count));
-}
-
 }  // namespace frond

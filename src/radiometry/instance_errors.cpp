@@ -1,6 +1,7 @@
 #include "radiometry/instance_errors.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "spectra/wavelengths/band_label.h"
 
@@ -30,6 +31,18 @@ InstanceErrors errors_of(std::string light, const FluxMeasurement& measurement, 
 }
 
 }  // namespace
+
+double FluxMeasurement::error() const {
+  double squares = 0;
+  size_t count = 0;
+  const auto add = [&](const std::vector<MeanError>& shares) {
+    for (const MeanError& s : shares) squares += s.standard_error * s.standard_error, ++count;
+  };
+  add(reflected);
+  for (const OfMaterial& m : materials)
+    if (m.is_hit) add(m.absorbed);
+  return count == 0 ? 0 : std::sqrt(squares / double(count));
+}
 
 InstanceErrors instance_errors(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   const size_t bands = measurement.bands.size();

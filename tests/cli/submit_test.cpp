@@ -90,7 +90,7 @@ TEST_F(Submit, NeedsOneEngine) {
 }
 
 TEST_F(Submit, RefusesNamesThatAnEngineCannotHave) {
-  expect_refusal(path("{a}.exr"), {"--engine", "snakemake"}, "snakemake cannot have any of {} in the path of an image",
+  expect_refusal(path("{a}.exr"), {"--engine", "snakemake"}, "snakemake cannot have any of {} in the path of a result",
                  path("{a}.exr.snakemake"));
   expect_refusal(path("{{a.exr"), {"--engine", "openjd"}, "OpenJD templates cannot have control characters or {{",
                  path("{{a.exr.openjd"));

@@ -57,7 +57,8 @@ fill() { # fill TEMPLATE NAME=VALUE...: as "frond submit" does
   local text pair
   text=$(<"$templates/$1")
   shift
-  text=${text//@OPTIONS@/}
+  text=${text//@OPTIONS@/} text=${text//@PART_OPTION@/}
+  text=${text//@MERGE@/merge -o @OUT@}
   for pair in "$@"; do text=${text//"@${pair%%=*}@"/"$(printf %q "${pair#*=}")"}; done
   printf '%s\n' "$text"
 }
@@ -69,7 +70,7 @@ make_job() {
   cp "$templates/submit.sh" "$job"
   chmod +x "$job/submit.sh"
   for template in render.sbatch merge.sbatch; do
-    fill "$template" FROND="$2" SCENE="$scene" OUT="$job/out.exr" SPP="$3" TASKS="$4" LAST_TASK=$(($4 - 1)) |
+    fill "$template" FROND="$2" SCENE="$scene" OUT="$job/out.exr" COMMAND=render AMOUNT_OPTION=--spp AMOUNT="$3" TASKS="$4" LAST_TASK=$(($4 - 1)) |
       sed -E "s/^checkpoint_seconds=.*/checkpoint_seconds=1/;${5:-}" >"$job/$template"
   done
 }

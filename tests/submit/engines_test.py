@@ -113,6 +113,36 @@ class EnginesTest(FrondTest):
                 self.check_image()
                 self.image.unlink()
 
+    def check_measurement(self, engine, job, amount, *words):
+        """Runs a job of a measurement in three tasks, and compares its table with that of one run."""
+        if not shutil.which(engine, path=PATH):
+            self.skipTest(f"{engine} is not installed")
+        scene = self.odd / "a 'canopy'.pbrt"
+        scene.write_text("""Option "float period" [ 1 1 ]
+WorldBegin
+LightSource "sky"
+Material "diffuse" "spectrum reflectance" [ 300 0.2  2500 0.2 ]
+Shape "bilinearmesh" "point3 P" [ 0 0 0  1 0 0  0 1 0  1 1 0 ]
+Material "diffusetransmission"
+Shape "bilinearmesh" "point3 P" [ 0 0 1  0.5 0 1  0 1 1  0.5 1 1 ]
+""")
+        table, single = (self.folder / name for name in ("a 'table' é.csv", "single.csv"))
+        command = ["--no-cache", *words, "--paths", str(amount)]
+        self.run_to_end([FROND, job, str(scene), *command, "--csv", str(single), "-q"])
+        self.run_to_end([FROND, "submit", job, str(scene), *command, "--csv", str(table), "--tasks", str(TASKS), "--engine",
+                         engine, "--folder", str(self.odd / f"{job} by {engine}"), "--run"], environment=ENVIRONMENT)
+        self.assertEqual(table.read_bytes(), single.read_bytes())
+        return table
+
+    def test_a_flux_of_tasks_is_that_of_one_run(self):
+        times = self.folder / "a day's.csv"
+        times.write_text("time,elevation\n2026-06-21T08:00,20\n2026-06-21T12:00,60\n2026-06-21T23:00,-10\n")
+        table = self.check_measurement("snakemake", "flux", 10000, "--bands", "par,nir", "--by", "mesh", "--times", str(times))
+        self.assertTrue(list(table.parent.glob(f"{table.stem}-*_days.csv")))
+
+    def test_a_brf_of_tasks_is_that_of_one_run(self):
+        self.check_measurement("openjd", "brf", 1000, "--zenith=-30:30:30", "--wavelengths", "550,800")
+
 
 if __name__ == "__main__":
     unittest.main()
