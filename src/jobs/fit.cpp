@@ -76,6 +76,10 @@ constexpr JobParam kParams[] = {
         {.type = "NAME=NUMBER", .decides = true}),
     JobParam("like", text, "Specimen used as a prior (standard deviation about one third).",
              {.choices = leaf::kSpecimenNames, .decides = true}),
+    JobParam("prior", texts,
+             "Measured spectra of three or more leaves, with R and T: for a leaf of which R alone or T alone was "
+             "measured, a prior over its structure is learned from them. By default that of seven leaves.",
+             {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "like"}),
     JobParam("material", text, "Leaf material to write.",
              {.type = "MATERIAL", .default_value = "leaf", .decides = true}),
 };
@@ -268,6 +272,38 @@ leaf::SpectraMeasurement reader_of(const Arguments& args) {
   return {args.text("leaf"), args.real("angle"), args.spelled("leaf"), args.spelled("all-leaves")};
 }
 
+/// Returns the prior of --prior; nullopt: not given. Throws InputError for leaves that cannot be learned from: all of
+/// them count, so that no leaf is left out silently.
+std::optional<leaf::StructurePrior> prior_of(const JobRun& run) {
+  const std::string option = run.args.spelled("prior");
+  if (!run.args.given("prior")) return {};
+  std::vector<leaf::FitRequest> leaves;
+  std::vector<std::string> names;
+  for (const std::string& file : run.args.texts("prior")) {
+    names.push_back(std::filesystem::path(file).filename().string());
+    for (leaf::MeasuredLeaf& one : leaf::read_measured_leaves(file, reader_of(run.args))) {
+      const std::string name = one.name.empty() ? "the leaf" : one.name;
+      if (!one.error.empty()) fail(location_of(file), "{}: {}: {}", option, name, one.error);
+      leaves.emplace_back().measurements = std::move(one.spectra.measurements);
+      if (leaf::used_prior(leaves.back()))
+        fail(location_of(file), "{}: {} has R alone or T alone, from which no structure can be learned", option, name);
+      check_values(run.args, leaves.back(), location_of(file));
+    }
+  }
+  // A variance of two leaves is hardly one.
+  constexpr size_t kLeast = 3;
+  if (leaves.size() < kLeast) fail({}, "{}: at least {} leaves are needed, not {}", option, kLeast, leaves.size());
+  return leaf::learn_prior(leaves, fmt::format("{} leaves of {}", leaves.size(), fmt::join(names, ", ")));
+}
+
+/// Warns if --prior was given for leaves that do not use it. That is no error: of many leaves some may have R and T.
+void check_prior_use(const JobRun& run, const std::vector<const leaf::FitResult*>& fits) {
+  if (run.args.given("prior") && std::ranges::none_of(fits, [](const auto* f) { return f->prior != nullptr; }))
+    run.log().warn({}, fmt::format("{} has no effect: it is for leaves of which only R or only T was measured, with "
+                                   "PROSPECT's absorption, as bifacial leaves with the sieve effect",
+                                   run.args.spelled("prior")));
+}
+
 /// Fits one leaf of --file or --data.
 Result fit_one(const JobRun& run) {
   const Arguments& args = run.args;
@@ -281,9 +317,12 @@ Result fit_one(const JobRun& run) {
   check_values(args, request, file.empty() ? Location{} : location_of(file));
   const MaterialInfo& material = material_of(run);
   check_fixed(request.fixed, material, run);
+  const std::optional<leaf::StructurePrior> prior = prior_of(run);
+  if (prior) request.structure_prior = &*prior;
   const double start = cpu_seconds();
   const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
   check_fitted(fitted.params, material, args.spelled("fix"));
+  check_prior_use(run, {&fitted});
   run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));
   std::string source = file.empty() ? "data" : std::filesystem::path(file).filename().string();
   if (args.given("leaf")) source += ", " + args.text("leaf");
@@ -358,7 +397,9 @@ Result fit_all(const JobRun& run) {
   const Arguments& args = run.args;
   if (args.given("plot")) fail({}, "{} draws one leaf: {} selects it", args.spelled("plot"), args.spelled("leaf"));
   // Errors in the options end the job before any file is read; errors of one leaf do not.
-  const leaf::FitRequest request = request_of(args);
+  leaf::FitRequest request = request_of(args);
+  const std::optional<leaf::StructurePrior> prior = prior_of(run);
+  if (prior) request.structure_prior = &*prior;
   const MaterialInfo& material = material_of(run);
   check_fixed(request.fixed, material, run);
   const std::vector<std::string> files = args.given("file") ? args.texts("file") : std::vector<std::string>{""};
@@ -380,6 +421,10 @@ Result fit_all(const JobRun& run) {
     if (run.control.progress) run.control.progress->update(double(++done) / double(leaves.size()), so_far);
   });
   if (run.control.progress) run.control.progress->finish();
+  std::vector<const leaf::FitResult*> fits;
+  for (const LeafFitReport& leaf : leaves)
+    if (leaf.error.empty()) fits.push_back(&leaf.result);
+  check_prior_use(run, fits);
   // A table without any leaf would look like a success.
   if (std::ranges::none_of(leaves, [](const LeafFitReport& leaf) { return leaf.error.empty(); }))
     fail({}, "no leaf could be fitted; the first, {}: {}", leaves[0].leaf, leaves[0].error);

@@ -51,6 +51,7 @@ void document(Table& table) {
   table.document(
       "rmse",
       "root mean square error of R and T together; rmse_R, rmse_T: of one of them, blank if it was not measured");
+  table.document("prior", "leaves of the prior over the structure, where only R or only T was measured");
   table.document("misfits", "number of bands in which R or T is off by more than 0.01");
   std::vector<std::string_view> coefficients;
   for (const LeafNumber& n : leaf::leaf_parameters())
@@ -95,6 +96,7 @@ Table leaves_table(const std::vector<LeafFitReport>& leaves, leaf::AbsorptionTab
     table.add("structure", !is_fitted ? "" : is_bifacial ? "bifacial" : "unifacial");
     table.add("sieve", !is_fitted ? "" : r.params.sieve_and_detour ? "true" : "false");
     table.add("absorption", tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski");
+    table.add("prior", is_fitted && r.prior ? r.prior->source : "");
     add_parameters(leaf, tables, table);
     add_contents(leaf, table);
   }
@@ -118,6 +120,9 @@ std::string leaves_text(const std::vector<LeafFitReport>& leaves) {
   std::string text = fmt::format("{} leaves: {} fitted, {} failed", leaves.size(), errors.size(), failed);
   if (!errors.empty()) text += fmt::format("; RMSE: median {:.4f}, largest {:.4f}", median(errors), errors.back());
   text += '\n';
+  const auto by_prior = std::ranges::count_if(leaves, [](const auto& leaf) { return leaf.result.prior != nullptr; });
+  if (by_prior > 0)
+    text += fmt::format("  {} with R alone or T alone: the structure follows a prior (docs/fit.md)\n", by_prior);
   size_t named = 0;
   for (const LeafFitReport& leaf : leaves)
     if (!leaf.error.empty() && named++ < kNamed) text += fmt::format("  {}: {}\n", leaf.leaf, leaf.error);

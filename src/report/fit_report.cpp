@@ -53,6 +53,7 @@ std::vector<std::string> undetermined_parameters(const FitReport& report) {
 std::string estimate_note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
   if (n.is_at_bound) return "at a limit of its range: not determined by the data";
+  if (n.is_of_prior) return "from the prior: not determined by the data";
   return n.is_identified() ? "" : "not determined by the data";
 }
 
@@ -91,9 +92,16 @@ std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
 
 }  // namespace
 
+std::string prior_text(const leaf::FitResult& result) {
+  if (!result.prior) return "";
+  return fmt::format("{} was not measured: the structure follows a prior, that of {}", result.rmse_r ? "T" : "R",
+                     result.prior->source);
+}
+
 std::string fit_scene(const FitReport& report, const std::string& name) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("# Fitted to {} by frond fit: {}.\n", report.source, rmse_text(result));
+  if (result.prior) text += fmt::format("# {}.\n", prior_text(result));
   if (const auto names = undetermined_parameters(report); !names.empty())
     text += fmt::format("# Not determined by the data, so no measurement: {}.\n", fmt::join(names, ", "));
   text += name.empty() ? fmt::format("Material \"{}\"", report.material)
@@ -126,6 +134,7 @@ std::string fit_text(const FitReport& report) {
   if (const auto far = std::ranges::count(result.fitted, true, &leaf::FitResult::Fitted::is_outlier); far > 0)
     text += fmt::format("  outliers (residual above 0.06, less weight): {}\n", far);
   text += misfit_text(report);
+  if (result.prior) text += prior_text(result) + "\n";
   text += fmt::format("structure of {}, {} the sieve effect\n", result.specimen->name,
                       result.params.sieve_and_detour ? "with" : "without");
   for (const FittedNumber& n : result.numbers)
@@ -157,15 +166,19 @@ std::string fit_text(const FitReport& report) {
 std::vector<Fact> fit_facts(const FitReport& report) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const leaf::FitResult& r = report.result;
-  return {{"source", report.source},
-          {"measurements", double(report.request.measurements.size())},
-          {"rmse", r.rmse},
-          {"rmse_R", r.rmse_r.value_or(kNone)},
-          {"rmse_T", r.rmse_t.value_or(kNone)},
-          {"specimen", std::string(r.specimen->name)},
-          {"structure", std::string(r.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial")},
-          {"sieve", r.params.sieve_and_detour},
-          {"absorption", std::string(is_prospect(r) ? "prospect" : "baranoski")}};
+  std::vector<Fact> facts{
+      {"source", report.source},
+      {"measurements", double(report.request.measurements.size())},
+      {"rmse", r.rmse},
+      {"rmse_R", r.rmse_r.value_or(kNone)},
+      {"rmse_T", r.rmse_t.value_or(kNone)},
+      {"specimen", std::string(r.specimen->name)},
+      {"structure", std::string(r.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial")},
+      {"sieve", r.params.sieve_and_detour},
+      {"absorption", std::string(is_prospect(r) ? "prospect" : "baranoski")},
+      {"prior", r.prior ? r.prior->source : ""}};
+  if (r.prior) facts.insert(facts.end(), {{"prior_rmse", r.prior->error}, {"prior_reach_nm", r.prior->reach_nm}});
+  return facts;
 }
 
 std::vector<Table> fit_tables(const FitReport& report) {
@@ -192,6 +205,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
     numbers.add("relative_standard_error", n.relative_error);
     numbers.add_flag("fixed", n.is_fixed);
     numbers.add_flag("at_bound", n.is_at_bound);
+    numbers.add_flag("from_prior", n.is_of_prior);
     numbers.add_flag("identified", n.is_identified());
   }
   for (const leaf::FittedContent& c : result.contents) {
@@ -224,7 +238,18 @@ std::vector<Table> fit_tables(const FitReport& report) {
     for (size_t b = 0; b < free.size(); ++b)
       correlations.add(std::string(free[b]->variable->name), result.correlations[a][b]);
   }
-  return {spectra, leaf, numbers, contents, bands, misfits, correlations};
+  std::vector<Table> all{spectra, leaf, numbers, contents, bands, misfits, correlations};
+  if (!result.prior) return all;
+  Table& prior = all.emplace_back(Table{"structure_prior"});
+  // Coordinates, not parameters: their distributions are normal.
+  for (size_t i = 0; i < leaf::prior_numbers().size(); ++i) {
+    prior.add("name", std::string(leaf::prior_numbers()[i]->name));
+    prior.add("mean", result.prior->mean[i]);
+    prior.add("standard_deviation", result.prior->deviation[i]);
+  }
+  prior.document(
+      "mean", "of the logarithm, that of otherabsorption times thickness and mesophyllfraction; of spongyshare itself");
+  return all;
 }
 
 namespace {

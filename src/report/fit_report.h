@@ -26,8 +26,11 @@ std::string fitted_material_text(const FitReport& report, const std::string& mat
 std::string fit_text(const FitReport& report);
 /// Returns errors, and results that are not parameters of the leaf.
 std::vector<Fact> fit_facts(const FitReport& report);
-/// Returns the tables "spectra", "leaf", "numbers", "contents", "bands", "misfits", "correlations".
+/// Returns the tables "spectra", "leaf", "numbers", "contents", "bands", "misfits", "correlations", and
+/// "structure_prior" if there is one.
 std::vector<Table> fit_tables(const FitReport& report);
+/// Returns the structure prior of a fit in words: "T was not measured: ..."; empty: there is none.
+std::string prior_text(const leaf::FitResult& result);
 /// Returns a chart of R from below and T from above: measured spectra as points, fitted spectra as lines.
 Chart fit_chart(const FitReport& report);
 

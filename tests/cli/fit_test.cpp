@@ -229,6 +229,36 @@ TEST_F(FittingMany, ABadLeafLosesNoOther) {
   EXPECT_THAT(scene, ::testing::Not(HasSubstr("\"bad\"")));
 }
 
+/// The leaves that the structure is learned from are named wherever a leaf follows them.
+TEST_F(FittingMany, LearnsThePriorOfLeavesWithoutTransmittance) {
+  const std::string both = folder_.write("both.csv", "leaf,nm,R,T\n" + rows("a", 1) + rows("b", .9)).string(),
+                    more = folder_.write("more.csv", "leaf,nm,R,T\n" + rows("c", .8) + rows("d", .95)).string();
+  std::string reflectance = "nm,R\n";
+  for (int nm = 450; nm <= 2200; nm += 125) reflectance += fmt::format("{},{}\n", nm, nm < 700 ? 0.06 : 0.3);
+  const std::string alone = folder_.write("alone.csv", reflectance).string();
+  const auto done = frond_command(
+      {"fit", alone, "--prior", both, "--prior", more, "--json", path("fit.json"), "-o", path("leaf.pbrt")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const char* kNamed = "T was not measured: the structure follows a prior, that of 4 leaves of both.csv, more.csv";
+  EXPECT_THAT(done.out, AllOf(HasSubstr(kNamed), HasSubstr("from the prior: not determined by the data")));
+  EXPECT_THAT(bytes_of(path("leaf.pbrt")), HasSubstr(kNamed));
+  const auto j = nlohmann::json::parse(bytes_of(path("fit.json")));
+  EXPECT_EQ(j["prior"], "4 leaves of both.csv, more.csv");
+  EXPECT_EQ(j["structure_prior"].size(), 6u);
+  EXPECT_EQ(words_of(fitted({alone, "--all-leaves"}), "prior")[0], "seven leaves of LOPEX93 and Davis");
+  EXPECT_THAT(done_.out, HasSubstr("1 with R alone or T alone"));
+  EXPECT_EQ(words_of(fitted({both, "--all-leaves", "--prior", both, "--prior", more}), "prior")[0], "");
+  EXPECT_THAT(done_.err, HasSubstr("--prior has no effect"));
+  const auto error = [&](const Words& priors) {
+    const auto wrong = frond_command({"fit", alone}, priors);
+    EXPECT_NE(wrong.code, 0);
+    return wrong.err;
+  };
+  EXPECT_THAT(error({"--prior", both}), HasSubstr("at least 3 leaves are needed, not 2"));
+  EXPECT_THAT(error({"--prior", both, "--prior", alone}), AllOf(HasSubstr("alone.csv"), HasSubstr("R alone")));
+  EXPECT_THAT(error({"--prior", both, "--like", "soybean"}), HasSubstr("--like"));
+}
+
 /// A leaf's fit depends neither on the others nor on the number of threads.
 TEST_F(FittingMany, IsTheFitOfEachLeafAlone) {
   const std::string file =

@@ -52,7 +52,10 @@ void compute_statistics(const FitRequest& request, const FitRows& rows, const Fo
   const Index n = space.count();
   const double spare = std::max(1.0, static_cast<double>(rows.values() - n));
   const double error = std::max(request.least_error, result.rmse * std::sqrt(static_cast<double>(r.size()) / spare));
-  const double variance = error * error * (1 + rho) / (1 - rho);
+  constexpr double kLeastCorrelation = 1e-3;
+  result.reach_nm = -rows.step_nm() / std::log(std::max(rho, kLeastCorrelation));
+  // R alone is fitted closer than R and T, by a wrong leaf: the error is not below that of the prior's leaves.
+  const double variance = std::max(error * error * (1 + rho) / (1 - rho), problem.prior_variance());
   const MatrixXd j = problem.jacobian(found.expansion, found.logs);
   // The almost flat prior makes the error of a parameter that the measurements do not determine large but finite.
   constexpr double kVague = 10;
@@ -61,6 +64,7 @@ void compute_statistics(const FitRequest& request, const FitRows& rows, const Fo
     const double expected = request.has_prior ? problem.expectation() / error : 0;
     information(i, i) += expected * expected + 1 / (kVague * kVague);
   }
+  if (result.prior) information += problem.prior_information(found.logs);
   const MatrixXd covariance = information.ldlt().solve(MatrixXd::Identity(n, n));
   result.correlations.assign(static_cast<size_t>(n), std::vector<double>(static_cast<size_t>(n)));
   for (Index a = 0; a < n; ++a)
@@ -75,6 +79,9 @@ void compute_statistics(const FitRequest& request, const FitRows& rows, const Fo
       const auto i = static_cast<Index>(place - space.free().begin());
       number.relative_error = std::sqrt(covariance(i, i));
       constexpr double kNear = 1.02;
+      const auto of_prior = result.prior ? result.prior->relative_deviation(*v, number.value) : std::nullopt;
+      constexpr double kHalf = 0.7;  // of the information
+      number.is_of_prior = of_prior && number.relative_error > kHalf * *of_prior;
       number.is_at_bound = number.value < v->fit_range.min * kNear || number.value > v->fit_range.max / kNear;
     }
     result.numbers.push_back(number);
@@ -109,11 +116,16 @@ std::optional<double> rmse_between(const FitRequest& request, const FitResult& r
   return root_mean_square(residuals);
 }
 
-FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool, FitCache* cache) {
+FitResult fit_leaf(const FitRequest& given, const ThreadPool& pool, FitCache* cache) {
   FitCache own;
+  FitRequest request = given;
+  const StructurePrior* prior = used_prior(given);
+  // The prior is of this kind of leaf; R alone does not tell the kinds apart.
+  if (prior) request.structure = Structure::bifacial, request.sieve = true;
   const FitRows rows(request);
   const FoundLeaf found = search_leaf(request, rows, pool, cache ? *cache : own);
   FitResult result;
+  result.prior = prior;
   result.params = found.space->at(found.logs), result.specimen = &found.space->specimen();
   for (const auto& [r, t] : found.solved) result.fitted.push_back({r, t, false});
   compute_statistics(request, rows, found, result);

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/spectrum.h"
+#include "leaf/fit/structure_prior.h"
 #include "leaf/tissue/specimens.h"
 
 namespace frond::leaf {
@@ -39,6 +40,8 @@ struct FitRequest {
   /// Use `like` as a prior with a standard deviation of about 0.3 in each parameter's logarithm; otherwise the prior is
   /// almost flat.
   bool has_prior = false;
+  /// Prior over the structure where only R or only T was measured (used_prior); nullptr: none.
+  const StructurePrior* structure_prior = &built_in_prior();
   /// Specific absorption of the fitted leaf. With `prospect`, dry matter takes the place of protein, cellulose and
   /// lignin.
   AbsorptionTables absorption_tables = AbsorptionTables::prospect;
@@ -61,9 +64,10 @@ struct FittedNumber {
   double relative_error = 0;  ///< standard error of its logarithm; 0 if fixed
   bool is_fixed = false;
   bool is_at_bound = false;
+  bool is_of_prior = false;  ///< its error is hardly below that of the structure prior
   /// Whether the measurements determine the parameter: it is not fixed, lies within its range, and its relative error
-  /// is below 0.5.
-  bool is_identified() const { return !is_fixed && !is_at_bound && relative_error < 0.5; }
+  /// is below 0.5, not by the prior.
+  bool is_identified() const { return !is_fixed && !is_at_bound && !is_of_prior && relative_error < 0.5; }
 };
 
 /// Content of a constituent per leaf area.
@@ -95,11 +99,13 @@ struct FitResult {
     double r, t;
     bool is_outlier;  ///< its residual is too large for the others' spread: it has less weight
   };
-  std::vector<FittedContent> contents;   ///< per leaf area, those above 0
-  std::vector<MisfitBand> misfits;       ///< see misfit_bands
-  std::vector<Fitted> fitted;            ///< [measurement], solved with the fitted parameters
-  double rmse = 0;                       ///< root mean square of the residuals
-  std::optional<double> rmse_r, rmse_t;  ///< of R alone and of T alone; nullopt: none was measured
+  std::vector<FittedContent> contents;    ///< per leaf area, those above 0
+  std::vector<MisfitBand> misfits;        ///< see misfit_bands
+  std::vector<Fitted> fitted;             ///< [measurement], solved with the fitted parameters
+  double rmse = 0;                        ///< root mean square of the residuals
+  std::optional<double> rmse_r, rmse_t;   ///< of R alone and of T alone; nullopt: none was measured
+  double reach_nm = 0;                    ///< the correlation of two residuals is about exp(-distance / reach)
+  const StructurePrior* prior = nullptr;  ///< the structure prior that was used, of the request; nullptr: none
 };
 
 /// Root mean square of the residuals at wavelengths within `nm`, R and T together; none if there are no measurements.

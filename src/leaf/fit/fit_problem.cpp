@@ -71,13 +71,50 @@ Index FitRows::values() const {
   return count;
 }
 
+double FitRows::step_nm() const {
+  const auto nm = std::ranges::minmax(rows, {}, &FitRow::lambda_nm);
+  const double steps = static_cast<double>(rows.size()) / static_cast<double>(theta_deg.size()) - 1;
+  return std::max(nm.max.lambda_nm - nm.min.lambda_nm, 1.0) / std::max(steps, 1.0);
+}
+
 FitProblem::FitProblem(const FitRequest& request, const LeafSpace& space, const FitRows& rows)
     : request_(request),
       space_(space),
       rows_(rows),
+      prior_(used_prior(request)),
       weight_(static_cast<double>(request.measurements.size()) / static_cast<double>(rows.rows.size())) {
   for (Index i = 0; i < space.count(); ++i)
     if (space.variable(i).is_structure()) structural_.push_back(i);
+  if (prior_) prior_variance_ = prior_->variance(rows.step_nm() / weight_);
+}
+
+VectorXd FitProblem::structure_residuals(const VectorXd& logs) const {
+  if (!prior_) return {};
+  const std::vector<double> at = prior_coordinates(space_.at(logs));
+  VectorXd residuals = VectorXd::Zero(static_cast<Index>(at.size()));
+  // A number that is given has no coordinate to be expected.
+  for (size_t i = 0; i < at.size(); ++i)
+    if (std::ranges::find(space_.free(), prior_numbers()[i]) != space_.free().end())
+      residuals[static_cast<Index>(i)] = (at[i] - prior_->mean[i]) / prior_->deviation[i];
+  return residuals;
+}
+
+MatrixXd FitProblem::structure_slopes(const VectorXd& logs) const {
+  constexpr double kStep = 1e-5;
+  const VectorXd here = structure_residuals(logs);
+  MatrixXd slopes(here.size(), space_.count());
+  for (Index i = 0; i < space_.count(); ++i) {
+    VectorXd moved = logs;
+    const double step = logs[i] + kStep <= space_.high(i) ? kStep : -kStep;
+    moved[i] += step;
+    slopes.col(i) = (structure_residuals(moved) - here) / step;
+  }
+  return slopes;
+}
+
+MatrixXd FitProblem::prior_information(const VectorXd& logs) const {
+  const MatrixXd slopes = structure_slopes(logs);
+  return slopes.transpose() * slopes;
 }
 
 OpticsSurface FitProblem::surface(const SurfaceExpansion& expansion, const VectorXd& logs) const {
@@ -107,7 +144,7 @@ double FitProblem::cost(const std::vector<Pair>& values, const VectorXd& logs) c
   }
   sum *= weight_;
   for (Index i = 0; i < space_.count(); ++i) sum += square(prior(i, logs));
-  return sum;
+  return sum + prior_variance_ * structure_residuals(logs).squaredNorm();
 }
 
 double FitProblem::cost(const SurfaceExpansion& expansion, const VectorXd& logs) const {
@@ -164,6 +201,13 @@ FitProblem::Normal FitProblem::normal(const SurfaceExpansion& expansion, const V
     const double residual = prior(i, logs);
     n.cost += residual * residual, n.gradient[i] += residual * expectation();
     n.product(i, i) += expectation() * expectation();
+  }
+  if (prior_) {
+    const VectorXd residuals = structure_residuals(logs);
+    const MatrixXd slopes = structure_slopes(logs);
+    n.cost += prior_variance_ * residuals.squaredNorm();
+    n.gradient += prior_variance_ * slopes.transpose() * residuals;
+    n.product += prior_variance_ * slopes.transpose() * slopes;
   }
   return n;
 }

@@ -51,6 +51,8 @@ struct FitRows {
                                           const Constituents& amounts) const;
   /// Number of measured values.
   Eigen::Index values() const;
+  /// Mean distance between the wavelengths of one angle.
+  double step_nm() const;
 
   std::vector<double> theta_deg;
   std::vector<FitRow> rows;
@@ -96,6 +98,11 @@ class FitProblem {
   /// Improves `logs` by the method of Levenberg and Marquardt within the ranges; returns the sum of squares there.
   double minimise(const SurfaceExpansion& expansion, const Effort& effort, Eigen::VectorXd& logs) const;
 
+  /// Returns the information about the logarithms that the structure prior adds; 0 without one.
+  Eigen::MatrixXd prior_information(const Eigen::VectorXd& logs) const;
+  /// Variance of measurements, against which the structure prior is weighed; 0 without one.
+  double prior_variance() const { return prior_variance_; }
+
   /// Weight of a logarithm's distance from the prior, in units of reflectance.
   double expectation() const { return request_.has_prior ? 0.03 : 3e-4; }
 
@@ -114,10 +121,16 @@ class FitProblem {
     return expectation() * (logs[i] - std::log(space_.variable(i).value(space_.origin())));
   }
 
+  /// Residuals of the structure prior in standard deviations, and their derivatives by the logarithms.
+  Eigen::VectorXd structure_residuals(const Eigen::VectorXd& logs) const;
+  Eigen::MatrixXd structure_slopes(const Eigen::VectorXd& logs) const;
+
   const FitRequest& request_;
   const LeafSpace& space_;
   const FitRows& rows_;
   std::vector<Eigen::Index> structural_;
+  const StructurePrior* prior_;
+  double prior_variance_ = 0;
   double weight_ = 1;  ///< of a row's squares: the number of measurements that it stands for
 };
 
