@@ -100,7 +100,8 @@ def flux(scene, wavelengths=None, *, by=None, times=None, **options):
     "left_740" (nmol/(m2 s nm) by leaf area).
 
     With bands="par,nir,shortwave" a dictionary of tables: "energy", one row for each quantity and band, with W/m2 and umol/(m2 s);
-    "leaves", sunlit and shaded leaf area with its light, if the scene has leaves; with by also "instances", "meshes", "parts",
+    "leaves", sunlit and shaded leaf area with its light, if the scene has leaves; "surfaces", the light on those of each material; with
+    by also "instances", "meshes", "parts",
     "triangles" or "materials".
 
     times: a table of times as a file, a data frame with a column or an index of times, or a dictionary of columns. The tables then

@@ -334,7 +334,7 @@ Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  1 1 0 ]
 """)
     tables = frond.flux(tmp_path / "leaf.pbrt", bands="par,all=300:2500", material="black", by="mesh", target=(0, 1, 0, 1, 0),
                         paths=20_000)
-    assert list(tables) == ["meshes", "energy", "leaves"]
+    assert list(tables) == ["meshes", "energy", "leaves", "surfaces"]
     incident = tables["energy"].query("quantity == 'incident' and material == ''").set_index("band")
     mesh = tables["meshes"].iloc[0]
     assert mesh["name"] == "black" and mesh["area"] == 0.5

@@ -128,6 +128,7 @@ TEST_F(EnergyJob, APlyHasTheLightOfEachFace) {
                                "par_w_m2\nproperty float par_umol_m2_s\nproperty float par_incident_w_m2\nproperty "
                                "float par_incident_umol_m2_s\n"
                                "property float sunlit_share\nproperty int triangle\nend_header\n"));
+  EXPECT_THAT(bytes, HasSubstr("property uchar blue\nproperty float par_w_m2\n")) << "vertices, for Blender";
   const PlyMesh read = read_ply(path("a.ply"));
   ASSERT_EQ(read.mesh.triangles.size(), 2u);
   EXPECT_EQ(read.mesh.p[4].y, 1);

@@ -184,23 +184,29 @@ Table leaf_table(const FluxMeasurement& measurement, bool all_rows) {
   Table table{"leaves"};
   struct Row {
     const char* name;
-    const MeanError& area;
+    MeanError area;
     const EnergyBudget::OfLeaves& light;
   };
-  const Row rows[] = {{"all", budget.leaf_area.all, budget.leaves},
-                      {"sunlit", budget.leaf_area.sunlit, budget.sunlit},
-                      {"shaded", budget.leaf_area.shaded, budget.shaded}};
-  const EnergyShare unknown{kNoLight, kNoLight};
+  const std::vector<EnergyShare> unknown(budget.incident.size(), {kNoLight, kNoLight}), zero(unknown.size());
+  const EnergyBudget::OfLeaves of_unknown{unknown, unknown}, of_none{zero, zero};
+  const MeanError& all = budget.leaf_area.all;
+  std::vector<Row> rows{{"all", all, budget.leaves}};
+  const bool is_dark =
+      std::ranges::all_of(budget.incident, [](const IncidentBand& in) { return in.energy.direct == 0; });
+  if (!budget.sunlit.absorbed.empty()) {
+    rows.push_back({"sunlit", budget.leaf_area.sunlit, budget.sunlit});
+    rows.push_back({"shaded", budget.leaf_area.shaded, budget.shaded});
+  } else if (all_rows) {  // without direct light, nothing is sunlit
+    rows.push_back({"sunlit", is_dark ? MeanError{} : MeanError{NAN, NAN}, is_dark ? of_none : of_unknown});
+    rows.push_back({"shaded", is_dark ? all : MeanError{NAN, NAN}, is_dark ? budget.leaves : of_unknown});
+  }
   for (const Row& row : rows)
     for (size_t band = 0; band < budget.incident.size(); ++band) {
-      const bool is_known = !row.light.absorbed.empty();
-      if (!is_known && !all_rows) continue;
       const IncidentBand& incident = budget.incident[band];
       const MeanError per_target = scaled(row.area, 1 / measurement.target_area);
-      const EnergyShare &absorbed = is_known ? row.light.absorbed[band] : unknown,
-                        &received = is_known ? row.light.incident[band] : unknown;
+      const EnergyShare &absorbed = row.light.absorbed[band], &received = row.light.incident[band];
       const auto add = [&](const std::string& name, const MeanError& share, double light) {
-        table.add(name, divided(scaled(share, light), per_target));
+        table.add(name, &row.light == &of_none ? MeanError{} : divided(scaled(share, light), per_target));
       };
       table.add("leaves", row.name);
       table.add("area", row.area);

@@ -25,7 +25,7 @@ std::string bands_text(const std::vector<NamedRange>& ranges, Interval optics_nm
 /// of direct and of diffuse light; albedo, and fAPAR for the band from 400 to 700 nm. With lamps, W and umol/s.
 Table energy_table(const FluxMeasurement& measurement);
 /// Returns a table of the leaf area: all, sunlit and shaded, with the light on it, for each unit of its area.
-/// `all_rows`: also rows of what is unknown, without a sun.
+/// `all_rows`: also rows of sunlit and shaded leaves without a sun: nothing is sunlit, or it is unknown.
 Table leaf_table(const FluxMeasurement& measurement, bool all_rows);
 /// Returns a table of the light on the surfaces of each material and that they absorb, for each unit of their area,
 /// without materials of instances.
@@ -41,8 +41,8 @@ std::optional<MeanError> fapar(const FluxMeasurement& measurement);
 
 /// Writes a PLY file (binary, little endian) of all meshes. Faces have the light that their organ absorbs in each band,
 /// as properties NAME_w_m2, NAME_umol_m2_s, and NAME_incident_ before these units, and `sunlit_share`; the first band
-/// is also the property `quality`, and a colour of faces and vertices. Returns the number of surfaces that are left
-/// out, since they are no meshes. Throws InputError.
+/// is also the property `quality`, and a colour. Vertices have the light and the colour, too. Returns the number of
+/// surfaces that are left out, since they are no meshes. Throws InputError.
 size_t write_organ_ply(const std::string& path, const FluxMeasurement& measurement, const Organs& organs);
 
 }  // namespace frond

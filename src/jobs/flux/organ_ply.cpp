@@ -65,7 +65,7 @@ double brightest(std::vector<float> values) {
 
 }  // namespace
 
-/// Each face has vertices of its own, so that a vertex has one colour.
+/// Each face has vertices of its own, so that a vertex has one colour and the numbers of one face.
 size_t write_organ_ply(const std::string& path, const FluxMeasurement& measurement, const Organs& organs) {
   // The first pass counts the faces and finds the range of the colours, which the head states.
   std::vector<float> first_band;
@@ -78,18 +78,19 @@ size_t write_organ_ply(const std::string& path, const FluxMeasurement& measureme
     first_band.push_back(number == 0 ? NAN : light_of(measurement, organs, number)[0]);
   });
   const double white = brightest(std::move(first_band));
-  std::string head = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment absorbed light by {0}; colours from 0 to {1:.6g} W/m2 of {2}\n"
-      "element vertex {3}\nproperty {4} x\nproperty {4} y\nproperty {4} z\n",
-      kOrganKinds[size_t(organs.kind())], white, measurement.bands[0].name, 3 * faces, is_far ? "double" : "float");
-  const char* const colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  head += colors;
-  head +=
-      fmt::format("element face {}\nproperty list uchar int vertex_indices\n{}property float quality\n", faces, colors);
+  std::string numbers;  // of faces, and of their vertices, of which Blender alone reads properties
   for (const Band& band : measurement.bands)
     for (const char* what : {"_w_m2", "_umol_m2_s", "_incident_w_m2", "_incident_umol_m2_s"})
-      head += fmt::format("property float {}{}\n", band.name, what);
-  head += fmt::format("property float sunlit_share\nproperty int {}\nend_header\n", kOrganKinds[size_t(organs.kind())]);
+      numbers += fmt::format("property float {}{}\n", band.name, what);
+  numbers += "property float sunlit_share\n";
+  const char* const colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string_view kind = kOrganKinds[size_t(organs.kind())];
+  const std::string head = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment absorbed light by {0}; colours from 0 to {1:.6g} W/m2 of {2}\n"
+      "element vertex {3}\nproperty {4} x\nproperty {4} y\nproperty {4} z\n{5}{6}"
+      "element face {7}\nproperty list uchar int vertex_indices\n{5}property float quality\n{6}property int {0}\n"
+      "end_header\n",
+      kind, white, measurement.bands[0].name, 3 * faces, is_far ? "double" : "float", colors, numbers, faces);
   std::vector<unsigned char> vertices, of_faces;
   int32_t next = 0;
   const std::vector<float> dark(4 * measurement.bands.size() + 1, NAN);
@@ -99,6 +100,7 @@ size_t write_organ_ply(const std::string& path, const FluxMeasurement& measureme
     for (const Vec3d& corner : corners) {
       is_far ? append(vertices, corner) : append(vertices, to_float(corner));
       append(vertices, color);
+      for (const float value : light) append(vertices, value);
     }
     of_faces.push_back(3);
     for (int k = 0; k < 3; ++k) append(of_faces, next++);
