@@ -301,7 +301,7 @@ def list(what: str | os.PathLike | None = None, *, progress = None, session: Ses
 def describe(name: str | os.PathLike | None = None, markdown: bool = False, commands: bool = False, *, pages: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Print the parameters of a plug-in or a command: types, defaults, units and ranges.
 
-    name: Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.
+    name: Name of a plug-in (see frond list), a kind of plug-in such as material, or a command; or a leaf with parameters, MATERIAL,specimen=maize: its contents per area and PROSPECT's numbers.
     markdown: Print Markdown; without a name, for every plug-in.
     commands: Print Markdown for every command. Excludes markdown.
     pages: Folder for Markdown pages of every plug-in: plugins.md, which lists all, and a page for each kind with the parameters. Excludes markdown, commands."""

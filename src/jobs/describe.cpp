@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "jobs/leaf/leaf_text.h"
 #include "jobs/record/command_line.h"
 #include "render/plugins.h"
 #include "system/new_files.h"
@@ -20,7 +21,9 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    JobParam("name", text, "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.",
+    JobParam("name", text,
+             "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command; or a leaf with "
+             "parameters, MATERIAL,specimen=maize: its contents per area and PROSPECT's numbers.",
              {.type = "PLUGIN", .positional = true}),
     JobParam("markdown", flag, "Print Markdown; without a name, for every plug-in."),
     JobParam("commands", flag, "Print Markdown for every command.", {.excludes = "markdown"}),
@@ -281,6 +284,8 @@ Result describe(const JobRun& run) {
     fail({}, "frond describe needs a name; frond list prints the names of plug-ins");
   const Registry registry = load_registry(run.context.options().plugins);
   if (!pages.empty()) return {.text = write_pages(pages, registry)};
+  // No plug-in has a comma in its name.
+  if (name.find(',') != name.npos) return {.text = describe_leaf(name, registry), .is_requested = true};
   std::vector<std::string_view> names;
   std::string found;
   const auto add = [&](bool is_chosen, const auto& info) {

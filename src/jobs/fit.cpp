@@ -326,7 +326,7 @@ Result fit_one(const JobRun& run) {
   run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));
   std::string source = file.empty() ? "data" : std::filesystem::path(file).filename().string();
   if (args.given("leaf")) source += ", " + args.text("leaf");
-  const FitReport report{request, fitted, source, args.text("material")};
+  const FitReport report{request, fitted, source, args.text("material"), leaf::fit_plates(request.measurements)};
   if (args.given("output")) write_text(args.text("output"), fit_scene(report));
   if (args.given("plot")) write_chart(args.text("plot"), fit_chart(report));
   auto facts = fit_facts(report);
@@ -384,6 +384,7 @@ void fit_one_of_many(const Arguments& args, const MaterialInfo& material, leaf::
     leaf.result = leaf::fit_leaf(request, ThreadPool(1), &cache);
     check_fitted(leaf.result.params, material, args.spelled("fix"));
     if (!std::isfinite(leaf.result.rmse)) fail({}, "the search found no leaf");
+    leaf.plates = leaf::fit_plates(request.measurements);
   } catch (const InputError& e) {
     leaf.error = e.what();
   }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/messages/counted.h"
+#include "jobs/leaf/leaf_text.h"
 #include "jobs/record/common_params.h"
 #include "leaf/plates/plate_leaf.h"
 #include "leaf/table/mode_lookup.h"
@@ -57,27 +58,6 @@ constexpr JobParam kParams[] = {
         "File to write; - is standard output. FILE.leaf, of a mode table: for other programs (docs/file_formats.md).",
         {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
 };
-
-/// Resolver for a table's parameters, which must be constants: it rejects textures and other references.
-class NoReferences final : public ParamResolver {
- public:
-  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { reject(); }
-  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { reject(); }
-  std::shared_ptr<Material> material(const std::string&, const Location&) override { reject(); }
-  SpectrumPtr spectrum(const ParsedParam&, SpectrumUse) override { reject(); }
-  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
-
- private:
-  [[noreturn]] static void reject() { fail({}, "the table of a leaf requires constant parameters, not textures"); }
-};
-
-/// Returns the parameters of the leaf, checked against the material's declarations.
-Params params_of(const PluginInfo& info, const PluginText& leaf) {
-  ParsedPlugin plugin{std::string(info.name), {}, {}};
-  set_params(leaf, info, {}, plugin);
-  static NoReferences none;
-  return Params(info, plugin, none);
-}
 
 /// Throws InputError for parameters that control the table of a render; the message names this job's equivalent.
 void check_is_of_leaf(const std::string& name, const Arguments& args) {
@@ -171,7 +151,7 @@ std::string kilobytes(size_t bytes) { return fmt::format("{} kB", (bytes + 512) 
 Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
   const PluginInfo only_tissue{"the table of", leaf.model.name, "", "", leaf_params()};
   const Arguments& args = run.args;
-  leaf::TableRequest request{.params = LeafParams(params_of(only_tissue, leaf.text)).tissue(),
+  leaf::TableRequest request{.params = LeafParams(constant_params(only_tissue, leaf.text)).tissue(),
                              .wavelengths_nm = wavelengths_of(args),
                              .theta_deg = angles_of(args),
                              .rays = int(args.count("rays")),
@@ -235,7 +215,7 @@ Result table(const JobRun& run) {
     reject(run.args, {"method", "angles", "rays", "seed", "equalsides"},
            fmt::format("tables of {}; those of {} follow from its \"tolerance\"",
                        model_with(LeafModel::Table::shares, run.session().registry()).name, leaf.model.name));
-    const Params params = params_of(leaf.model, leaf.text);
+    const Params params = constant_params(leaf.model, leaf.text);
     return is_leaf_file ? make_leaf_file(run, params) : make_modes_file(run, params);
   }
   const std::string method = run.args.spelled("method");

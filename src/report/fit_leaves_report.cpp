@@ -51,6 +51,7 @@ void document(Table& table) {
   table.document(
       "rmse",
       "root mean square error of R and T together; rmse_R, rmse_T: of one of them, blank if it was not measured");
+  table.document("rmse_prospect", "of PROSPECT-D fitted to the same measurements: the columns N to this one's left");
   table.document("prior", "leaves of the prior over the structure, where only R or only T was measured");
   table.document("misfits", "number of bands in which R or T is off by more than 0.01");
   std::vector<std::string_view> coefficients;
@@ -99,6 +100,10 @@ Table leaves_table(const std::vector<LeafFitReport>& leaves, leaf::AbsorptionTab
     table.add("prior", is_fitted && r.prior ? r.prior->source : "");
     add_parameters(leaf, tables, table);
     add_contents(leaf, table);
+    // PROSPECT's names and units, beside frond's contents.
+    for (size_t i = 0; i < leaf::plate_numbers().size(); ++i)
+      table.add(std::string(leaf::plate_numbers()[i].name), leaf.plates ? leaf.plates->leaf.values[i] : kNone);
+    table.add("rmse_prospect", leaf.plates ? leaf.plates->rmse : kNone);
   }
   if (!leaves.empty()) document(table);
   return table;

@@ -124,6 +124,17 @@ std::string fitted_material_text(const FitReport& report, const std::string& mat
   return text;
 }
 
+std::string number_line(std::string_view name, double value, std::string_view unit) {
+  return fmt::format("  {:<20} {:>10.4g}{}{}\n", name, value, unit.empty() ? "" : " ", unit);
+}
+
+std::string plates_text(const leaf::PlateFit& plates) {
+  std::string text = fmt::format("PROSPECT-D, fitted to the same R and T: RMSE {:.4f}\n", plates.rmse);
+  for (size_t i = 0; i < leaf::plate_numbers().size(); ++i)
+    text += number_line(leaf::plate_numbers()[i].name, plates.leaf.values[i], leaf::plate_numbers()[i].unit);
+  return text;
+}
+
 std::string fit_text(const FitReport& report) {
   const leaf::FitResult& result = report.result;
   std::string text =
@@ -154,6 +165,7 @@ std::string fit_text(const FitReport& report) {
                         : c.relative_error > kExact ? "not determined by the data"
                                                     : "as given");
   }
+  if (report.plates) text += plates_text(*report.plates);
   const auto free = free_numbers(report);
   for (size_t a = 0; a < free.size(); ++a)
     for (size_t b = 0; b < a; ++b)
@@ -176,6 +188,7 @@ std::vector<Fact> fit_facts(const FitReport& report) {
       {"structure", std::string(r.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial")},
       {"sieve", r.params.sieve_and_detour},
       {"absorption", std::string(is_prospect(r) ? "prospect" : "baranoski")},
+      {"rmse_prospect", report.plates ? report.plates->rmse : kNone},
       {"prior", r.prior ? r.prior->source : ""}};
   if (r.prior) facts.insert(facts.end(), {{"prior_rmse", r.prior->error}, {"prior_reach_nm", r.prior->reach_nm}});
   return facts;
@@ -239,6 +252,14 @@ std::vector<Table> fit_tables(const FitReport& report) {
       correlations.add(std::string(free[b]->variable->name), result.correlations[a][b]);
   }
   std::vector<Table> all{spectra, leaf, numbers, contents, bands, misfits, correlations};
+  if (report.plates) {
+    Table& prospect = all.emplace_back(Table{"prospect"});
+    for (size_t i = 0; i < leaf::plate_numbers().size(); ++i) {
+      prospect.add("name", std::string(leaf::plate_numbers()[i].name));
+      prospect.add("value", report.plates->leaf.values[i]);
+      prospect.add("unit", std::string(leaf::plate_numbers()[i].unit));
+    }
+  }
   if (!result.prior) return all;
   Table& prior = all.emplace_back(Table{"structure_prior"});
   // Coordinates, not parameters: their distributions are normal.

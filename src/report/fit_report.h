@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "leaf/fit/fit.h"
+#include "leaf/plates/plate_leaf.h"
 #include "report/chart.h"
 #include "report/table.h"
 
@@ -13,8 +14,9 @@ namespace frond {
 struct FitReport {
   const leaf::FitRequest& request;
   const leaf::FitResult& result;
-  std::string source;    ///< name of the file with the measurements
-  std::string material;  ///< plug-in of the Material directive
+  std::string source;                         ///< name of the file with the measurements
+  std::string material;                       ///< plug-in of the Material directive
+  std::optional<leaf::PlateFit> plates = {};  ///< PROSPECT's numbers for the same measurements
 };
 
 /// Returns a `Material` directive with comments: the source, and the parameters that the data do not determine. With a
@@ -31,6 +33,10 @@ std::vector<Fact> fit_facts(const FitReport& report);
 std::vector<Table> fit_tables(const FitReport& report);
 /// Returns the structure prior of a fit in words: "T was not measured: ..."; empty: there is none.
 std::string prior_text(const leaf::FitResult& result);
+/// Returns a number of a leaf as a line of text.
+std::string number_line(std::string_view name, double value, std::string_view unit);
+/// Returns PROSPECT's numbers as such lines.
+std::string plates_text(const leaf::PlateFit& plates);
 /// Returns a chart of R from below and T from above: measured spectra as points, fitted spectra as lines.
 Chart fit_chart(const FitReport& report);
 
@@ -42,6 +48,7 @@ struct LeafFitReport {
   size_t measurements = 0;
   leaf::FitRequest request = {};  ///< what was fitted; may lack the measurements
   leaf::FitResult result = {};    ///< only without `error`
+  std::optional<leaf::PlateFit> plates = {};
 };
 
 /// Returns the table "leaves", a row for each leaf: file, leaf, status, errors, kind, parameters and contents with

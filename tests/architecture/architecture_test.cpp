@@ -71,10 +71,11 @@ const std::map<std::string, Layers> kAllowedInside{
     {"study", {{"", {}}, {"compare", {""}}, {"compare/report", {"compare", ""}}, {"choose", {""}}}},
     {"jobs",
      {{"record", {}},
-      {"support", {"record"}},
+      {"leaf", {}},
+      {"support", {"record", "leaf"}},
       {"submit", {"support"}},
       {"flux", {"record", "support"}},
-      {"", {"record", "support", "submit", "flux"}}}},
+      {"", {"record", "leaf", "support", "submit", "flux"}}}},
 };
 
 struct Include {

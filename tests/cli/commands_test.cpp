@@ -109,6 +109,25 @@ TEST_F(Commands, ListNamesEveryPluginAndDescribeItsParameters) {
   EXPECT_THAT(frond_command({"describe", "abn"}).err, HasSubstr("did you mean \"abm\"?"));
 }
 
+/// Of a leaf with parameters: of what PROSPECT's numbers describe the walk takes another one's place.
+TEST_F(Commands, ALeafIsDescribedWithProspectsNumbers) {
+  const std::string plates = "leaf_solved,N=1.5,Cab=40,Car=8,Cw=0.01,Cm=0.009";
+  const Outcome of_plates = frond_command({"describe", plates});
+  EXPECT_EQ(of_plates.code, 0) << of_plates.err;
+  EXPECT_THAT(of_plates.out, AllOf(HasSubstr("parameters of the nearest walk, whose R and T differ by 0.0"),
+                                   HasSubstr("chlorophylla"), HasSubstr("per leaf area"), HasSubstr("PROSPECT-D")));
+  const Outcome of_walk = frond_command({"describe", "abm,specimen=walnut"});
+  EXPECT_THAT(of_walk.out, AllOf(Not(HasSubstr("nearest walk")), HasSubstr("  Cab  ")));
+  EXPECT_THAT(frond_command({"describe", "diffuse,reflectance=1"}).err, HasSubstr("\"diffuse\" is no leaf"));
+  EXPECT_THAT(frond_command({"describe", "abm,N=1"}).err, HasSubstr("needs \"Cab\" too"));
+  const auto measured = [](const std::string& leaf) {
+    return frond_command({"spectrophotometer", leaf, "--wavelengths", "550,800", "--rays", "100"}).err;
+  };
+  const std::string difference = "leaf of PROSPECT: R and T of the walk differ by";
+  EXPECT_THAT(measured(plates), HasSubstr(difference));
+  EXPECT_THAT(measured("leaf_lambert" + plates.substr(plates.find(','))), Not(HasSubstr(difference)));
+}
+
 TEST_F(Commands, TheDocumentedPluginsAreThoseOfThisBuild) {
   const fs::path folder = path("pages"), docs = FROND_SOURCE_DIR "/docs";
   ASSERT_EQ(frond_command({"describe", "--pages", folder.string()}).code, 0);

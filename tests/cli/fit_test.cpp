@@ -39,6 +39,9 @@ TEST_F(Fitting, WritesALeafThatAScenesReaderTakes) {
   EXPECT_EQ(j["spectra"].size(), 11u);
   EXPECT_EQ(j["correlations"].size() + 1, j["correlations"][0].size());
   EXPECT_EQ(parse_csv(bytes_of(csv)).rows.size(), 11u);
+  EXPECT_EQ(j["prospect"][0]["name"], "N");
+  EXPECT_LT(j["rmse_prospect"], 0.05);
+  EXPECT_THAT(done.out, HasSubstr("PROSPECT-D, fitted to the same R and T: RMSE 0.0"));
   const std::string scene =
       folder_
           .write(

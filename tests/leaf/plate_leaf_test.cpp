@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "leaf/fit/measured_spectra.h"
 #include "leaf/solve/solver.h"
 #include "leaf/tissue/constants.h"
 
@@ -105,6 +106,37 @@ TEST(PlateLeaf, HasALeafOfTheWalkThatIsNear) {
     EXPECT_NEAR(shares.surface + shares.subsurface, *at(spectra, nm).r, walk.largest + 0.005) << nm;
     EXPECT_NEAR(shares.transmitted, *at(spectra, nm).t, walk.largest + 0.005) << nm;
   }
+}
+
+/// PROSPECT's own spectra give its numbers again; R alone does so for these, as PROSPECT has no further structure.
+TEST(PlateLeaf, IsFittedByItsSpectra) {
+  for (const PlateLeaf& leaf :
+       {PlateLeaf{{1.5, 40, 8, 1, 0.1, 0.01, 0.009}}, PlateLeaf{{2.4, 70, 14, 0, 0, 0.03, 0.003}}})
+    for (const bool has_t : {true, false}) {
+      std::vector<LeafMeasurement> spectra;
+      for (LeafMeasurement m : plate_spectra(leaf)) {
+        if (std::fmod(m.lambda_nm, 20) != 0) continue;
+        if (!has_t) m.t.reset();
+        spectra.push_back(m);
+      }
+      spectra.push_back({550, 60, 0.9, {}});  // an angle that PROSPECT does not have
+      const auto fitted = fit_plates(spectra);
+      ASSERT_TRUE(fitted);
+      EXPECT_LT(fitted->rmse, 1e-5);
+      for (size_t i = 0; i < leaf.values.size(); ++i)
+        EXPECT_NEAR(fitted->leaf.values[i], leaf.values[i], 0.01 * leaf.values[i] + 0.01) << plate_numbers()[i].name;
+    }
+  EXPECT_FALSE(fit_plates(std::vector<LeafMeasurement>{{550, 8, 0.1, 0.1}}));
+}
+
+/// By SciPy's least_squares and prosail 2.0.5 (measurements/fit.py): RMSE 0.0100, N 1.71, 34.4 ug/cm2 of chlorophyll.
+TEST(PlateLeaf, IsFittedToAMeasuredLeaf) {
+  const auto leaves = read_measured_leaves(FROND_SOURCE_DIR "/tests/reference/lopex93_soybean.csv", {});
+  const auto fitted = fit_plates(leaves[0].spectra.measurements);
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(fitted->rmse, 0.0100, 5e-5);
+  EXPECT_NEAR(fitted->leaf.plates(), 1.708, 0.002);
+  EXPECT_NEAR(fitted->leaf.values[1], 34.41, 0.05);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "jobs/leaf/leaf_text.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "spectra/named.h"
@@ -13,8 +14,10 @@ MaterialsUnderTest::MaterialsUnderTest(const JobRun& run)
     : run_(run), as_rendered_(run.args.flag("rendered")), angles_deg_(run.args.numbers("angles")) {
   read_wavelengths();
   Session& session = run.session();
-  for (const std::string& text : materials_of(run))
+  for (const std::string& text : materials_of(run)) {
     materials_.emplace_back(text, session.registry(), lights_, session.pool(), run.log(), run.context.options().cache);
+    log_walk_of_plates(text, session.registry(), run.log());
+  }
   // Errors of any material and angle are reported before the first ray.
   Arena arena;
   for (size_t i = 0; i < size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <list>
@@ -12,6 +13,11 @@
 #include "leaf/tissue/leaf_numbers.h"
 
 namespace frond::leaf {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 namespace {
 
 const PlateNumber* find(std::span<const PlateNumber> numbers, std::string_view name) {
@@ -63,18 +69,109 @@ Slab stack(const Slab& one, double count) {
   return {a * (b * b - 1) / below, b * (a * a - 1) / below};
 }
 
-Slab shares_at(const PlateLeaf& leaf, const ProspectNode& node) {
+/// Transmittances of the interfaces of plates at one node.
+struct Interfaces {
+  double first;     ///< into the first plate
+  double entering;  ///< into each further one
+  double leaving;   ///< out of each
+};
+
+/// Returns those of all nodes, in the order of prospect_nodes().
+const std::vector<Interfaces>& interfaces() {
+  constexpr double kFirst_deg = 40;
+  static const std::vector<Interfaces> all = [] {
+    std::vector<Interfaces> made;
+    for (const ProspectNode& node : prospect_nodes()) {
+      const double n = node.refractive_index, entering = interface_transmittance(90, n);
+      made.push_back({interface_transmittance(kFirst_deg, n), entering, entering / (n * n)});
+    }
+    return made;
+  }();
+  return all;
+}
+
+Slab shares_at(const PlateLeaf& leaf, size_t node) {
+  const ProspectConstants& specific = prospect_nodes()[node].specific;
   double depth = 0;
   for (size_t i = 1; i < leaf.values.size(); ++i)
-    depth += leaf.values[i] * plate_numbers()[i].scale * node.specific.*plate_numbers()[i].specific;
-  constexpr double kFirst_deg = 40;
-  const double n = node.refractive_index, entering = interface_transmittance(90, n), leaving = entering / (n * n);
+    depth += leaf.values[i] * plate_numbers()[i].scale * specific.*plate_numbers()[i].specific;
+  const auto [into_first, entering, leaving] = interfaces()[node];
   const double layer = layer_transmittance(depth / leaf.plates());
-  const Slab first = plate(interface_transmittance(kFirst_deg, n), leaving, layer),
-             each = plate(entering, leaving, layer);
+  const Slab first = plate(into_first, leaving, layer), each = plate(entering, leaving, layer);
   const Slab rest = stack(each, leaf.plates() - 1);
   const double between = 1 - rest.r * each.r;
   return {first.r + first.t * rest.r * each.t / between, first.t * rest.t / between};
+}
+
+/// A measured R or T.
+struct PlateRow {
+  size_t node;  ///< the nearest one: nodes are 1 nm apart
+  bool is_t;
+  double value;
+};
+
+std::vector<PlateRow> plate_rows(std::span<const LeafMeasurement> measurements) {
+  constexpr double kMost_deg = 20;
+  const std::span<const ProspectNode> nodes = prospect_nodes();
+  std::vector<PlateRow> rows;
+  for (const LeafMeasurement& m : measurements) {
+    const double nm = std::round(m.lambda_nm), theta = std::min(m.theta_deg, 180 - m.theta_deg);
+    if (theta > kMost_deg || nm < nodes.front().nm || nm > nodes.back().nm) continue;
+    const auto node = static_cast<size_t>(nm - nodes.front().nm);
+    if (m.r) rows.push_back({node, false, *m.r});
+    if (m.t) rows.push_back({node, true, *m.t});
+  }
+  return rows;
+}
+
+VectorXd plate_residuals(std::span<const PlateRow> rows, const VectorXd& values) {
+  const PlateLeaf leaf{{values.begin(), values.end()}};
+  VectorXd residuals(static_cast<Index>(rows.size()));
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const Slab shares = shares_at(leaf, rows[i].node);
+    residuals[static_cast<Index>(i)] = (rows[i].is_t ? shares.t : shares.r) - rows[i].value;
+  }
+  return residuals;
+}
+
+/// Method of Levenberg and Marquardt within the ranges of the numbers, from `values`; returns the sum of squares.
+double minimise(std::span<const PlateRow> rows, const VectorXd& low, const VectorXd& high, VectorXd& values) {
+  constexpr int kMostSteps = 60;
+  constexpr double kDone = 1e-7, kMostDamping = 1e8, kStep = 1e-6;
+  const Index count = values.size();
+  VectorXd residuals = plate_residuals(rows, values);
+  double damping = 1e-2;
+  for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+    MatrixXd slopes(residuals.size(), count);
+    for (Index i = 0; i < count; ++i) {
+      VectorXd moved = values;
+      moved[i] += kStep * (high[i] - low[i]);  // the formulae hold somewhat beyond the range, too
+      slopes.col(i) = (plate_residuals(rows, moved) - residuals) / (moved[i] - values[i]);
+    }
+    const VectorXd gradient = slopes.transpose() * residuals;
+    // A number at an end of its range stays there unless the sum of squares falls away from it.
+    std::vector<Index> free;
+    for (Index i = 0; i < count; ++i)
+      if (!(values[i] <= low[i] && gradient[i] > 0) && !(values[i] >= high[i] && gradient[i] < 0)) free.push_back(i);
+    if (free.empty()) break;
+    const MatrixXd product = slopes(Eigen::all, free).transpose() * slopes(Eigen::all, free);
+    double gain = 0;
+    for (; damping < kMostDamping; damping *= 4) {
+      MatrixXd damped = product;
+      damped.diagonal() *= 1 + damping;
+      VectorXd there = values;
+      there(free) -= damped.ldlt().solve(gradient(free));
+      there = there.cwiseMax(low).cwiseMin(high);
+      const VectorXd found = plate_residuals(rows, there);
+      if (!(found.squaredNorm() < residuals.squaredNorm())) continue;
+      gain = 1 - found.squaredNorm() / residuals.squaredNorm();
+      residuals = found, values = there;
+      damping = std::max(damping / 10, 1e-9);
+      break;
+    }
+    if (gain < kDone) break;
+  }
+  return residuals.squaredNorm();
 }
 
 NearestWalk fit(const PlateLeaf& leaf) {
@@ -125,13 +222,38 @@ std::span<const PlateNumber> plate_numbers() {
 
 const PlateNumber* find_plate_number(std::string_view name) { return find(plate_numbers(), name); }
 
+std::optional<PlateFit> fit_plates(std::span<const LeafMeasurement> measurements) {
+  const std::vector<PlateRow> rows = plate_rows(measurements);
+  const std::span<const PlateNumber> numbers = plate_numbers();
+  if (rows.size() < numbers.size()) return {};
+  const auto count = static_cast<Index>(numbers.size());
+  VectorXd low(count), high(count);
+  for (Index i = 0; i < count; ++i) {
+    const Interval& range = numbers[static_cast<size_t>(i)].range;
+    low[i] = range.min, high[i] = range.max;
+  }
+  // Plates, and contents as shares of the largest ones.
+  constexpr std::pair<double, double> kStarts[] = {{1.5, 0.02}, {2.5, 0.01}, {1.2, 0.06}};
+  PlateFit best{{}, HUGE_VAL};
+  for (const auto& [plates, share] : kStarts) {
+    VectorXd values = share * high;
+    values[0] = plates;
+    const double rmse = std::sqrt(minimise(rows, low, high, values) / static_cast<double>(rows.size()));
+    constexpr double kSame = 1e-3;
+    const bool is_same = std::abs(rmse - best.rmse) < kSame * rmse;
+    if (rmse < best.rmse) best = {{{values.begin(), values.end()}}, rmse};
+    if (is_same) break;
+  }
+  return best;
+}
+
 std::vector<LeafMeasurement> plate_spectra(const PlateLeaf& leaf) {
   constexpr double kTheta_deg = 8;
   std::vector<LeafMeasurement> spectra;
-  for (const ProspectNode& node : prospect_nodes()) {
-    const auto [r, t] = shares_at(leaf, node);
+  for (size_t i = 0; i < prospect_nodes().size(); ++i) {
+    const auto [r, t] = shares_at(leaf, i);
     if (spectra.empty()) spectra.push_back({kConstantsRange_nm.min, kTheta_deg, r, t});
-    spectra.push_back({node.nm, kTheta_deg, r, t});
+    spectra.push_back({prospect_nodes()[i].nm, kTheta_deg, r, t});
   }
   return spectra;
 }

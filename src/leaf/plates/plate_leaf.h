@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,17 @@ struct PlateLeaf {
 /// Returns R and T of the leaf at each nm from 400 to 2500, and at 360 nm those at 400 nm; both sides are alike.
 /// PROSPECT takes light within 40 degrees of the normal; the measurements have an angle of incidence of 8 degrees.
 std::vector<LeafMeasurement> plate_spectra(const PlateLeaf& leaf);
+
+/// Leaf of plates that was fitted to measurements.
+struct PlateFit {
+  PlateLeaf leaf;
+  double rmse;  ///< of the R and T that were measured
+};
+
+/// Returns the leaf of plates with the least squares of R and T, without any prior, from several starts. Uses the
+/// measurements from 400 nm on, at angles of incidence below 20 degrees on either side, for which PROSPECT is made;
+/// nullopt: their values are fewer than the numbers.
+std::optional<PlateFit> fit_plates(std::span<const LeafMeasurement> measurements);
 
 /// Leaf of the random walk in place of a leaf of plates.
 struct NearestWalk {
