@@ -3,8 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <mutex>
 
 #include "core/messages/counted.h"
@@ -50,6 +52,10 @@ constexpr JobParam kParams[] = {
              "Fit every leaf; --csv has one row for each, with its parameters, their standard errors and, if it could "
              "not be fitted, the reason.",
              {.decides = true}),
+    JobParam("specimens", text,
+             "Specimen file to write: the fitted leaves, and \"mean\", the leaf fitted to the means of their R and T "
+             "(docs/fit.md).",
+             {.type = "FILE", .path = PathUse::write}),
     JobParam("directions", text,
              "Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction "
              "between it and the fitted leaf.",
@@ -393,6 +399,34 @@ void fit_one_of_many(const Arguments& args, const MaterialInfo& material, leaf::
   leaf.request = std::move(request);
 }
 
+/// Returns the mean of the leaves: a leaf with the means of R and T at the wavelengths and angles that all of them
+/// have. Its parameters are fitted to these, as those of every leaf: means of the leaves' parameters would be those of
+/// a leaf with other R and T.
+LeafFitReport mean_leaf(const std::vector<LeafFitReport>& leaves) {
+  using Mean = std::array<std::pair<double, size_t>, 2>;  // sums of R and T, and their numbers of values
+  std::map<std::pair<double, double>, Mean> means;
+  size_t count = 0;
+  for (const LeafFitReport& leaf : leaves) {
+    // A leaf that could not be read has no spectra, and is not one of the library.
+    if (!leaf.error.empty()) continue;
+    ++count;
+    for (const leaf::LeafMeasurement& m : leaf.request.measurements) {
+      Mean& mean = means[{m.theta_deg, m.lambda_nm}];
+      if (m.r) mean[0].first += *m.r, ++mean[0].second;
+      if (m.t) mean[1].first += *m.t, ++mean[1].second;
+    }
+  }
+  LeafFitReport report{"", "mean"};
+  for (const auto& [at, mean] : means) {
+    const auto value = [&](const auto& sum) {
+      return sum.second == count ? std::optional(sum.first / double(count)) : std::nullopt;
+    };
+    const leaf::LeafMeasurement m{at.second, at.first, value(mean[0]), value(mean[1])};
+    if (m.r || m.t) report.request.measurements.push_back(m);
+  }
+  return report;
+}
+
 /// Fits every leaf of the files, each on one thread: the result does not depend on their number.
 Result fit_all(const JobRun& run) {
   const Arguments& args = run.args;
@@ -406,6 +440,8 @@ Result fit_all(const JobRun& run) {
   const std::vector<std::string> files = args.given("file") ? args.texts("file") : std::vector<std::string>{""};
   std::vector<LeafFitReport> leaves;
   for (const std::string& file : files) read_leaves(run, file, files.size() > 1, leaves);
+
+  LeafFitReport mean = mean_leaf(leaves);  // before the fits, which drop the spectra
 
   const auto start = std::chrono::steady_clock::now();
   const double cpu = cpu_seconds();
@@ -431,6 +467,12 @@ Result fit_all(const JobRun& run) {
     fail({}, "no leaf could be fitted; the first, {}: {}", leaves[0].leaf, leaves[0].error);
   run.log().info(fmt::format("fitted in {:.3g} s of CPU", cpu_seconds() - cpu));
   if (args.given("output")) write_text(args.text("output"), leaves_scene(leaves, args.text("material")));
+  if (args.given("specimens")) {
+    fit_one_of_many(args, material, request, cache, mean);
+    if (!mean.error.empty())
+      run.log().warn({}, fmt::format("{}: no mean leaf: {}", args.spelled("specimens"), mean.error));
+    write_text(args.text("specimens"), specimens_csv(leaves, mean, request.absorption_tables));
+  }
   return {.tables = {leaves_table(leaves, request.absorption_tables)},
           .facts = leaves_facts(leaves),
           .notes = {"leaves fitted by frond fit"},
@@ -448,6 +490,8 @@ Result fit(const JobRun& run) {
   const bool has_files = args.given("file") && args.texts("file").size() > 1;
   if (has_files && args.given("directions"))
     fail({}, "{} compares one leaf, but there are {} files", args.spelled("directions"), args.texts("file").size());
+  if (args.given("specimens") && !args.flag("all-leaves") && !has_files)
+    fail({}, "{} writes many leaves: add {}", args.spelled("specimens"), args.spelled("all-leaves"));
   if (has_files && args.given("leaf"))
     fail({}, "{} selects a leaf of one file, but there are {}", args.spelled("leaf"), args.texts("file").size());
   return args.flag("all-leaves") || has_files ? fit_all(run) : fit_one(run);

@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "core/material.h"
+#include "core/messages/excerpt.h"
 #include "leaf/tissue/absorption.h"
 #include "leaf/tissue/constants.h"
+#include "leaf/tissue/specimen_file.h"
 #include "spectra/check_range.h"
 #include "spectra/spd_file.h"
 
@@ -24,6 +26,10 @@ constexpr Param kSpecimen{
     .name = "specimen", .kind = ParamKind::string, .default_value = std::string_view("soybean"),
     .doc = "Named set of leaf parameters, from the literature or fitted to measurements (frond list specimens): the "
            "structure, and the parameters that are not given.", .choices = leaf::kSpecimenNames};
+constexpr Param kSpecimenFile{
+    .name = "specimenfile", .kind = ParamKind::string,
+    .doc = "Leaf of a specimen file instead of a named specimen, as in leaves.csv:LEAF (frond fit --specimens; "
+           "docs/file_formats.md).", .in_place_of_others = true};
 constexpr Param kTables{
     .name = "absorption", .kind = ParamKind::string,
     .doc = "Specific absorption of chlorophylls, carotenoids and water. baranoski: as published with the model; "
@@ -73,6 +79,16 @@ Incident incident_of(std::string_view word) {
   return word == "light" ? Incident::light : Incident::traced;
 }
 
+/// A named leaf, with its parameters.
+std::pair<std::string, TissueParams> specimen_of(const Params& p) {
+  if (!p.given("specimenfile")) return {p.string("specimen"), leaf::find_specimen(p.string("specimen"))->params};
+  if (p.given("specimen")) fail(p.where("specimen"), "\"specimen\" has no effect beside \"specimenfile\"");
+  const std::filesystem::path path = p.file("specimenfile");
+  const auto [file, name] = spectrum_column(path);
+  if (is_foreign(path)) mark_foreign(file);
+  return {spectrum_name(path), leaf::read_specimen(file, name, p.where("specimenfile"))};
+}
+
 leaf::EmissionShape emission_of(const Params& p) {
   if (!p.given("emission")) return {};
   const std::filesystem::path file = p.file("emission");
@@ -95,7 +111,7 @@ std::shared_ptr<const leaf::EmissionMatrices> matrices_of(const Params& p) {
 
 const std::vector<Param>& leaf_params() {
   static const std::vector<Param> params = [] {
-    std::vector<Param> all{kSpecimen};
+    std::vector<Param> all{kSpecimen, kSpecimenFile};
     for (const LeafNumber& n : leaf::leaf_parameters())
       if (n.acts_by_depth()) all.push_back(param_of(n));
     all.push_back(kTables);
@@ -116,8 +132,8 @@ const std::vector<Param>& leaf_params() {
 }
 
 bool is_of_tissue(const Param& leaf_param) {
-  constexpr std::string_view kOfNone[] = {"specimen", "incident", "fluorescencematrices", "fluorescenceunit",
-                                          "fluorescencescale"};
+  constexpr std::string_view kOfNone[] = {"specimen",         "specimenfile",     "incident", "fluorescencematrices",
+                                          "fluorescenceunit", "fluorescencescale"};
   const LeafNumber* n = leaf::find_leaf_number(leaf_param.name);
   return n ? n->action != leaf::LeafAction::surface : std::ranges::find(kOfNone, leaf_param.name) == std::end(kOfNone);
 }
@@ -157,11 +173,8 @@ std::optional<leaf::PlateLeaf> plate_leaf(const Params& p) {
 }
 
 LeafParams::LeafParams(const Params& p, Plates plates)
-    // Starts from the specimen's parameters; `read` replaces those that the scene gives.
-    : specimen_(p.string("specimen")),
-      where_(p.where()),
+    : where_(p.where()),
       pigments_where_(p.where("pigments")),
-      tissue_(leaf::find_specimen(specimen_)->params),
       incident_(incident_of(p.string("incident"))),
       plates_(plate_leaf(p)),
       depth_(read(p, plates)),
@@ -175,6 +188,8 @@ static bool is_replaced_by_plates(const Param& of_leaf) {
 }
 
 leaf::DepthMap LeafParams::read(const Params& p, Plates plates) {
+  // Starts from the specimen's parameters, which those of the scene replace.
+  std::tie(specimen_, tissue_) = specimen_of(p);
   if (plates_) {
     for (const Param& of_leaf : leaf_params())
       if (is_replaced_by_plates(of_leaf) && p.given(of_leaf.name))

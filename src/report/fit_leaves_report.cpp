@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -16,11 +17,34 @@ using leaf::LeafNumber;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+/// Whether leaves with these absorption tables have the number.
+bool is_stated(const LeafNumber& n, leaf::AbsorptionTables tables) { return !n.only_with || *n.only_with == tables; }
+
+/// Adds the columns that say which leaf the numbers describe.
+void add_kind(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Table& table) {
+  const bool is_fitted = leaf.error.empty(), is_bifacial = leaf.result.params.structure == leaf::Structure::bifacial;
+  table.add("specimen", is_fitted ? std::string(leaf.result.specimen->name) : "");
+  table.add("structure", !is_fitted ? "" : is_bifacial ? "bifacial" : "unifacial");
+  table.add("sieve", !is_fitted ? "" : leaf.result.params.sieve_and_detour ? "true" : "false");
+  table.add("absorption", tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski");
+}
+
+/// Names of the leaves in scenes and specimen files; a name that several files have is preceded by the file's.
+std::vector<std::string> names_of(const std::vector<LeafFitReport>& leaves) {
+  std::map<std::string, size_t> uses;
+  for (const LeafFitReport& leaf : leaves) ++uses[leaf.leaf];
+  std::vector<std::string> names;
+  for (const LeafFitReport& leaf : leaves) {
+    std::string& name = names.emplace_back(uses[leaf.leaf] > 1 ? leaf.file + "/" + leaf.leaf : leaf.leaf);
+    std::erase_if(name, [](char c) { return c == '"' || c == '\\'; });  // which end or escape a string of a scene
+  }
+  return names;
+}
+
 void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Table& table) {
   std::vector<std::string_view> undetermined;
-  const auto is_stated = [tables](const LeafNumber& n) { return !n.only_with || *n.only_with == tables; };
   for (const LeafNumber& v : leaf::fit_variables()) {
-    if (!is_stated(v)) continue;
+    if (!is_stated(v, tables)) continue;
     const auto& numbers = leaf.result.numbers;
     const auto n = std::ranges::find(numbers, &v, &leaf::FittedNumber::variable);
     const bool has = leaf.error.empty() && n != numbers.end();
@@ -31,7 +55,7 @@ void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Ta
   // Parameters that follow others, then parameters of the specimen.
   for (const bool follows : {true, false})
     for (const LeafNumber& n : leaf::leaf_parameters())
-      if (!n.is_fitted() && n.changes_shares() && n.follows.empty() != follows && is_stated(n))
+      if (!n.is_fitted() && n.changes_shares() && n.follows.empty() != follows && is_stated(n, tables))
         table.add(std::string(n.name), leaf.error.empty() ? n.value(leaf.result.params) : kNone);
   table.add("undetermined", fmt::format("{}", fmt::join(undetermined, " ")));
 }
@@ -92,11 +116,7 @@ Table leaves_table(const std::vector<LeafFitReport>& leaves, leaf::AbsorptionTab
     table.add("rmse_R", is_fitted ? r.rmse_r.value_or(kNone) : kNone);
     table.add("rmse_T", is_fitted ? r.rmse_t.value_or(kNone) : kNone);
     table.add("misfits", is_fitted ? double(r.misfits.size()) : kNone);
-    const bool is_bifacial = r.params.structure == leaf::Structure::bifacial;
-    table.add("specimen", is_fitted ? std::string(r.specimen->name) : "");
-    table.add("structure", !is_fitted ? "" : is_bifacial ? "bifacial" : "unifacial");
-    table.add("sieve", !is_fitted ? "" : r.params.sieve_and_detour ? "true" : "false");
-    table.add("absorption", tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski");
+    add_kind(leaf, tables, table);
     table.add("prior", is_fitted && r.prior ? r.prior->source : "");
     add_parameters(leaf, tables, table);
     add_contents(leaf, table);
@@ -136,17 +156,49 @@ std::string leaves_text(const std::vector<LeafFitReport>& leaves) {
 }
 
 std::string leaves_scene(const std::vector<LeafFitReport>& leaves, const std::string& material) {
-  std::map<std::string, size_t> uses;
-  for (const LeafFitReport& leaf : leaves) ++uses[leaf.leaf];
-  std::string text;
-  for (const LeafFitReport& leaf : leaves) {
+  const std::vector<std::string> names = names_of(leaves);
+  std::string text, all;
+  for (size_t i = 0; i < leaves.size(); ++i) {
+    const LeafFitReport& leaf = leaves[i];
     if (!leaf.error.empty()) continue;
-    std::string name = uses[leaf.leaf] > 1 ? leaf.file + "/" + leaf.leaf : leaf.leaf;
-    std::erase_if(name, [](char c) { return c == '"' || c == '\\'; });  // which end or escape a string of a scene
     const std::string source = leaf.file.empty() ? leaf.leaf : leaf.file + ", " + leaf.leaf;
-    text += fit_scene({leaf.request, leaf.result, source, material}, name);
+    text += fit_scene({leaf.request, leaf.result, source, material}, names[i]);
+    all += fmt::format(" \"{}\"", names[i]);
   }
-  return text;
+  return text + fmt::format(
+                    "\n# One of these leaves for each instance: frond canopy --column leaf=0:1\n"
+                    "Texture \"leaf\" \"float\" \"instance\" \"string column\" \"leaf\" \"float range\" [ 0 1 ]\n"
+                    "MakeNamedMaterial \"all leaves\" \"string type\" \"mix\" \"texture select\" \"leaf\"\n"
+                    "    \"string materials\" [{} ]\n",
+                    all);
+}
+
+std::string specimens_csv(const std::vector<LeafFitReport>& leaves, const LeafFitReport& mean,
+                          leaf::AbsorptionTables tables) {
+  std::vector<std::string> names = names_of(leaves);
+  Table table{"specimens"};
+  std::map<std::string_view, std::vector<double>> logarithms;
+  const auto add = [&](const LeafFitReport& leaf, const std::string& name) {
+    if (!leaf.error.empty()) return;
+    table.add("leaf", name);
+    add_kind(leaf, tables, table);
+    for (const LeafNumber& n : leaf::leaf_parameters())
+      if (n.changes_shares() && is_stated(n, tables)) table.add(std::string(n.name), n.value(leaf.result.params));
+    if (&leaf != &mean)
+      for (const leaf::FittedNumber& n : leaf.result.numbers)
+        if (!n.is_fixed) logarithms[n.variable->name].push_back(std::log(n.value));
+  };
+  for (size_t i = 0; i < leaves.size(); ++i) add(leaves[i], names[i]);
+  add(mean, "mean");
+  std::string spread = "standard deviations of the logarithms over the leaves:";
+  for (const LeafNumber& n : leaf::fit_variables())
+    if (const auto& logs = logarithms[n.name]; logs.size() > 1) {
+      double sum = 0, squares = 0;
+      for (const double v : logs) sum += v;
+      for (const double v : logs) squares += std::pow(v - sum / double(logs.size()), 2);
+      spread += fmt::format(" {} {:.3g}", n.name, std::sqrt(squares / double(logs.size() - 1)));
+    }
+  return to_csv(table, {"leaves fitted by frond fit, for \"string specimenfile\" \"FILE:LEAF\"", spread});
 }
 
 }  // namespace frond

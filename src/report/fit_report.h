@@ -59,7 +59,12 @@ std::vector<Fact> leaves_facts(const std::vector<LeafFitReport>& leaves);
 /// Returns text for a terminal: these facts, and the first leaves that failed.
 std::string leaves_text(const std::vector<LeafFitReport>& leaves);
 /// Returns `MakeNamedMaterial` directives of all fitted leaves, by their names; a name that several files have is
-/// preceded by the file's.
+/// preceded by the file's. The last one, "all leaves", is one of them for each instance, by the column `leaf` of a
+/// table of instances.
 std::string leaves_scene(const std::vector<LeafFitReport>& leaves, const std::string& material);
+/// Returns a specimen file of the fitted leaves and their mean, with the standard deviations of the logarithms of their
+/// parameters as a comment.
+std::string specimens_csv(const std::vector<LeafFitReport>& leaves, const LeafFitReport& mean,
+                          leaf::AbsorptionTables tables);
 
 }  // namespace frond

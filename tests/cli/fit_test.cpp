@@ -1,3 +1,5 @@
+#include "leaf/fit/fit.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,6 +8,7 @@
 #include <sstream>
 
 #include "jobs/record/job.h"
+#include "leaf/tissue/specimen_file.h"
 #include "tests/cli/table.h"
 #include "tests/support/command_test.h"
 
@@ -330,6 +333,38 @@ TEST_F(FittingMany, TheTableHasWhatTheSceneFileHas) {
     }
     EXPECT_EQ(numbers, 17);
   }
+}
+
+/// The specimen file has the leaves of the table and the leaf of the means, which lies between two leaves; the scene
+/// file ends with a material that is one of the leaves for each instance. The standard error of R is 0.001: a right
+/// program fails by chance in less than one of 10,000 seeds.
+TEST_F(FittingMany, WritesASpecimenFile) {
+  const std::string file = folder_.write("two.csv", "leaf,nm,R,T\n" + rows("a", 1) + rows("b", 0.8)).string();
+  const CsvTable fits = fitted({file, "--all-leaves", "--specimens", path("leaves.csv"), "-o", path("leaves.pbrt")});
+  const std::string csv = bytes_of(path("leaves.csv"));
+  EXPECT_THAT(csv, AllOf(HasSubstr("standard deviations of the logarithms over the leaves: thickness "),
+                         HasSubstr("\na,soybean,bifacial,true,prospect,"), HasSubstr("\nmean,")));
+  leaf::TissueParams leaf;
+  for (const size_t row : {size_t(0), size_t(1)}) {
+    leaf = leaf::parse_specimen(csv, "leaves.csv", words_of(fits, "leaf")[row]);
+    for (const leaf::LeafNumber& n : leaf::fit_variables())
+      if (!n.only_with || *n.only_with == leaf::AbsorptionTables::prospect) {
+        EXPECT_NEAR(n.value(leaf) / fits.number(row, std::string(n.name)), 1, 1e-8) << n.name;
+      }
+  }
+  EXPECT_EQ(leaf.number("protein"), 0);  // which the specimen has, and a fit with PROSPECT's absorption has not
+  EXPECT_EQ(leaf, leaf::parse_specimen(bytes_of(path("fits.csv")), "fits.csv", "b"));  // tables of fits have the same
+  const auto r = [&](const char* name) {
+    const auto done = frond_command({"spectrophotometer", "leaf_solved,specimenfile=" + path("leaves.csv") + ":" + name,
+                                     "--wavelengths", "550", "--rays", "1e5", "--csv", path("r.csv")});
+    EXPECT_EQ(done.code, 0) << done.err;
+    return parse_csv(bytes_of(path("r.csv"))).number(0, "R");
+  };
+  EXPECT_NEAR(r("mean"), (r("a") + r("b")) / 2, 0.005);
+  EXPECT_THAT(bytes_of(path("leaves.pbrt")),
+              AllOf(HasSubstr("MakeNamedMaterial \"all leaves\" \"string type\" \"mix\" \"texture select\" \"leaf\""),
+                    HasSubstr("\"string materials\" [ \"a\" \"b\" ]")));
+  EXPECT_THAT(frond_command({"fit", spectrum_, "--specimens", path("x.csv")}).err, HasSubstr("add --all-leaves"));
 }
 
 TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {

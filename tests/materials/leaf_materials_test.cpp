@@ -73,6 +73,21 @@ TEST(LeafMaterials, TakeFromTheSpecimenWhatIsNotGiven) {
             changed);
 }
 
+TEST(LeafMaterials, TakeALeafOfASpecimenFile) {
+  const TestFolder folder("specimens");
+  const std::string file = folder.write("leaves.csv", "leaf,specimen,lignin\nA,maize,3\nB,maize,4\n").string();
+  leaf::TissueParams changed = leaf::find_specimen("maize")->params;
+  changed.number("lignin") = 4;
+  EXPECT_EQ(read({words("specimenfile", {file + ":B"})}), changed);
+  changed.number("lignin") = 5;
+  EXPECT_EQ(read({words("specimenfile", {file + ":B"}), number("float", "lignin", {5})}), changed);
+  EXPECT_THAT(error_of([&] { read({words("specimenfile", {file + ":C"})}); }), HasSubstr("there is no leaf \"C\""));
+  EXPECT_THAT(error_of([&] {
+                read({words("specimenfile", {file + ":A"}), words("specimen", {"maize"})});
+              }),
+              HasSubstr("\"specimen\" has no effect beside \"specimenfile\""));
+}
+
 TEST(LeafParams, KnowsWhatTexturesVary) {
   Resolver resolver;
   const auto leaf = [&](std::vector<ParsedParam> params) {

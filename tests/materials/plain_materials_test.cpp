@@ -41,5 +41,20 @@ TEST(Mix, IsTheWeightedSum) {
   EXPECT_FLOAT_EQ(mix.bsdf().f(wo, down, rng)[0], 0.25f * 0.25f * kInvPi);
 }
 
+TEST(Mix, SelectsOneOfManyMaterials) {
+  const auto f = [](const char* select) {
+    Ready mix("mix", {words("materials", {"diffuse", "diffusetransmission", "diffuse"}), texture("select", {select})});
+    RandomStream rng(1);
+    return mix.bsdf().f(Vec3{0, 0, 1}, Vec3{0, 0, 1}, rng)[0] * kPi;
+  };
+  for (const char* select : {"0:0", "0.33:0.33", "0.67:0.67", "1:1"}) EXPECT_FLOAT_EQ(f(select), 0.5f) << select;
+  for (const char* select : {"0.34:0.34", "0.66:0.66"}) EXPECT_FLOAT_EQ(f(select), 0.25f) << select;
+  EXPECT_THAT(error_of([] {
+                Ready("mix", {words("materials", {"diffuse", "diffuse"}), texture("select", {"0:1"}),
+                              testing::number("float", "amount", {0.5})});
+              }),
+              HasSubstr("\"amount\" has no effect beside \"select\""));
+}
+
 }  // namespace
 }  // namespace frond::test

@@ -15,7 +15,7 @@ namespace {
 
 // Parameters of frond_leaf beside the numbers of a leaf.
 constexpr std::array kWords{"specimen", "absorption", "incident"};
-constexpr std::array kRefused{"pigments", "pigmentconcentrations", "tablefile", "tableleaf"};
+constexpr std::array kRefused{"pigments", "pigmentconcentrations", "specimenfile", "tablefile", "tableleaf"};
 
 /// True if the list has the name.
 bool contains(const auto& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); }

@@ -138,6 +138,9 @@ bool Materials::write_mix(Xml& xml, const Source& source) {
   const std::vector<size_t> parts = parts_of(source.plugin);
   const auto& materials = context_.description.materials;
   FloatValue amount = float_value(context_, source.plugin, source.p, "amount");
+  if (const ParsedParam* const select = find_param(source.plugin.params, "select"))
+    context_.report_unsupported("materials", select->where, "\"select\" of a mixture has no equivalent in Mitsuba",
+                                "a blend of its first two materials stands for it");
   if (std::ranges::any_of(parts, [&](size_t part) { return is_smooth(context_, materials[part].plugin); })) {
     context_.report_unsupported(
         "materials", source.plugin.where,
@@ -149,7 +152,7 @@ bool Materials::write_mix(Xml& xml, const Source& source) {
   }
   const Element bsdf(xml, "bsdf", {{"type", "blendbsdf"}, {"id", source.id}});
   write_value(context_, xml, "weight", amount);
-  for (const size_t part : parts) xml.reference(ids_.at(part));
+  for (const size_t i : {size_t(0), std::min<size_t>(1, parts.size() - 1)}) xml.reference(ids_.at(parts[i]));
   return amount.image || std::ranges::any_of(parts, [this](size_t part) { return has_image(part); });
 }
 
