@@ -24,8 +24,10 @@ import scipy.optimize
 
 import frond
 
+from .rami import sun
 from .shared import charts
-from .shared.tools import FROND, ROOT, Use, arguments, machine, program_csv, rms, table, write_section
+from .shared.tools import FROND, ROOT, Use, arguments, machine, program, program_csv, rms, table, write_section
+from .shared.turbid import turbid_layer
 
 REFERENCE = ROOT / "tests" / "reference"
 
@@ -316,6 +318,37 @@ def recovered(fitted):
 PLATE_NAMES = ("N", "Cab", "Car", "Cbrown", "Cw", "Cm", "Cant")  # in the order of run_prospect
 
 
+#: A layer of small disks of a leaf by PROSPECT's parameters, repeated periodically.
+LAYER = """Option "float period" [ 2 2 ]
+WorldBegin
+{sun}
+Material "diffuse" "spectrum reflectance" [ 300 {soil} 2500 {soil} ]
+Shape "bilinearmesh" "point3 P" [ 0 0 0  2 0 0  0 2 0  2 2 0 ]
+Material "leaf_lambert" {leaf}
+ObjectBegin "leaf" Shape "disk" ObjectEnd
+Shape "instances" "string object" "leaf" "string filename" "layer.npy"
+"""
+CANOPY_LEAF = {"N": 1.5, "Cab": 40, "Car": 8, "Cw": 0.01, "Cm": 0.009}
+LAI, SOIL, SUN, RADIUS, HEIGHT, RED_NIR = 3, 0.15, 30, 0.0125, 2, (670, 800)
+
+
+def ndvi(r, t, draws, paths):
+    """NDVI at the nadir of a canopy of this leaf, whose R and T at RED_NIR are given: mean and standard error over draws of leaves,
+    and the solution of the turbid layer by doubling."""
+    index = lambda brf: (brf[1] - brf[0]) / (brf[1] + brf[0])
+    solution = index([turbid_layer(LAI, *shares, SOIL, SUN, [(0, 0)])[2][0] for shares in zip(r, t)])
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        scene = pathlib.Path(folder) / "layer.pbrt"
+        leaf = " ".join(f'"float {name}" {value}' for name, value in CANOPY_LEAF.items())
+        scene.write_text(LAYER.format(sun=sun(SUN), soil=SOIL, leaf=leaf))
+        for seed in range(1, draws + 1):
+            program("canopy", "-q", "-o", scene.with_name("layer.npy"), "--lai", LAI, "--angles", "spherical", "--scale", RADIUS,
+                    "--size", "2,2", "--heights", f"{RADIUS},{HEIGHT - RADIUS}", "--seed", seed)
+            found.append(index(frond.brf(scene, RED_NIR, zenith=[0], paths=paths, seed=seed).brf.to_numpy()))
+    return numpy.mean(found), numpy.std(found, ddof=1) / draws**0.5, solution
+
+
 def plates(count):
     """Compares leaves by PROSPECT's parameters with prosail; returns the section of docs/leaf_models.md."""
     rng, off, walks = numpy.random.default_rng(SEED), [], []
@@ -329,10 +362,17 @@ def plates(count):
         walk = frond.fit(nm, R=r, T=t).spectra
         walks.append(numpy.abs(numpy.concatenate([walk.R_fitted - walk.R, walk.T_fitted - walk["T"]])))
     rmse, largest = [rms(w) for w in walks], [w.max() for w in walks]
+    one = CANOPY_LEAF
+    nm, r, t = prosail.run_prospect(one["N"], one["Cab"], one["Car"], 0, one["Cw"], one["Cm"], ant=0, prospect_version="D")
+    mean, error, solution = ndvi(*([float(v[nm == at][0]) for at in RED_NIR] for v in (r, t)), *((4, 65536) if count > 5 else (2, 4096)))
     return f"""Measured by `measurements/run fit`, with {count} random leaves (N 1 to 3, Cab 5 to 90 µg/cm², Car up to 20, Cant up to 10, Cbrown up to 1,
 Cw 0.002 to 0.04 cm, Cm 0.001 to 0.02 g/cm²), every 10 nm from 400 to 2500 nm. Largest difference of R and T from prosail
 {version("prosail")}: {max(off):.1g}. The nearest walk differs by {numpy.median(rmse):.4f} (median of the leaves' RMS; worst {max(rmse):.4f}); the largest
 difference of a leaf is {numpy.median(largest):.3f} (median; worst {max(largest):.3f}).
+
+NDVI ({RED_NIR[0]} and {RED_NIR[1]} nm) at the nadir of a canopy of `leaf_lambert,{",".join(f"{k}={v}" for k, v in one.items())}`, disks of {100 * RADIUS:g} cm, leaf area
+index {LAI}, spherical leaf angles, soil of reflectance {SOIL}, sun at {SUN}°: {mean:.4f} ± {error:.4f}. A turbid layer of leaves with prosail's R
+and T, solved by doubling, has {solution:.4f}.
 """
 
 
