@@ -41,12 +41,9 @@ late_library(NETCDF netcdf netcdf "frond export --format netcdf")
 late_library(RSVG librsvg-2.0 rsvg-2 "charts as .png")
 
 # Optional: only the program that reads model files links it.
-pkg_check_modules(ASSIMP QUIET IMPORTED_TARGET assimp)
-if(ASSIMP_FOUND)
-  add_library(frond_assimp_library INTERFACE IMPORTED GLOBAL)
-  target_link_libraries(frond_assimp_library INTERFACE PkgConfig::ASSIMP)
-else()
-  message(STATUS "assimp is not found: \"frond import\" will be refused")
+find_package(meshoptimizer CONFIG QUIET)
+if(NOT meshoptimizer_FOUND)
+  message(STATUS "meshoptimizer is not found: glTF files with EXT_meshopt_compression will be refused")
 endif()
 
 # Headers alone, which have no pkg-config file.

@@ -26,7 +26,7 @@ configure_options=()  # options of CMake in addition to the preset's
 build_packages=(
   g++ cmake ninja-build pkg-config ccache
   libembree-dev libopenimageio-dev libwebp-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
-  libzstd-dev zlib1g-dev libboost-dev libgmock-dev libbenchmark-dev libnetcdf-dev libassimp-dev
+  libzstd-dev zlib1g-dev libboost-dev libgmock-dev libbenchmark-dev libnetcdf-dev libmeshoptimizer-dev
   librsvg2-dev libnanovdb-dev
 )
 

@@ -374,7 +374,7 @@ def check(scene: str | os.PathLike | Sequence[str | os.PathLike] | Scene | Seque
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors."""
 
-def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, objects: bool = False, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, textures: str | os.PathLike | Sequence[str | os.PathLike] | None = None, objects: bool = False, single_sided: str | os.PathLike | Sequence[str | os.PathLike] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Write a plant model of another program, OBJ or glTF, as a scene, or list what it contains.
 
     The model is read in a process of its own; files that it names are read in its folder and below only. Names of materials, their colours, opacity and normal maps, and instances are kept.
@@ -385,6 +385,7 @@ def import_(model: str | os.PathLike, output: str | os.PathLike | None = None, l
     unit: Length unit of the model, which is converted to metres; by default m, glTF's unit. One of m, cm, mm, inch. Excludes scale.
     scale: Metres for one unit of the model. Range: from 1e-12 to 1e+12.
     up: Axis that is up in the model; z is up in the scene. By default y, glTF's axis. One of y, z.
+    textures: Folder with images of the model, beside those in the model's folder and below it. Images are searched for by their names. Repeatable.
     objects: Keep each object of the model as an object of the scene with its name, which frond flux by instance measures. By default the meshes of a material are joined.
     single_sided: Material, by name with * and ?, whose leaves are two sheets, front and back: remove the second sheet. Repeatable.
     strict: Treat warnings as errors."""

@@ -318,11 +318,6 @@ def test_commands_are_functions(scene_text, tmp_path, monkeypatch):
 def test_a_command_that_is_a_word_of_python_has_an_underscore(tmp_path):
     model = tmp_path / "plant.obj"
     model.write_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nusemtl leaf.1\nf 1 2 3\n")
-    try:
-        found = frond.import_(model, tmp_path / "plant.pbrt", leaf={"leaf*": "leaf_lambert,specimen=maize"}, up="z", unit="cm")
-    except frond.InputError as error:
-        if "frond-assimp, which is not installed" not in str(error):
-            raise
-        pytest.skip("built without assimp")
+    found = frond.import_(model, tmp_path / "plant.pbrt", leaf={"leaf*": "leaf_lambert,specimen=maize"}, up="z", unit="cm")
     assert list(found.table["type"]) == ["leaf_lambert"] and found.facts["height"] == pytest.approx(0.01)
     assert frond.load(tmp_path / "plant.pbrt", swap="leaf_solved")

@@ -9,7 +9,7 @@
 
 namespace frond {
 
-/// Scene of a model file (OBJ, glTF) as plain data, independent of the library that reads the file.
+/// Scene of a model file (OBJ, glTF) as plain data: what the process that reads the file returns.
 
 /// Image that a material names: a file, or bytes that the model file contains.
 struct ImportedImage {
@@ -34,16 +34,29 @@ struct ImportedMaterial {
   enum class Alpha : uint8_t { opaque, mask, blend };
 
   std::string name;
-  std::array<float, 3> color{0.5f, 0.5f, 0.5f};  ///< linear sRGB; a factor if there is a texture
+  std::array<float, 3> color{0.6f, 0.6f, 0.6f};  ///< linear sRGB; a factor if there is a texture
   float opacity = 1;
   Alpha alpha = Alpha::blend;  ///< use of the opacity and of the alpha channel of `color_texture`
   float cutoff = 0.5f;         ///< Alpha::mask: opacity below it counts as 0, otherwise as 1
   ImportedTexture color_texture = {}, opacity_texture = {}, normal_texture = {};
+  std::array<float, 2> normal_scale{1, 1};  ///< factors of x and y of the normal map
   float metalness = 0, roughness = 1;
+  /// Share of the diffuse light that is transmitted, with a colour of its own; the alpha channel of the first texture
+  /// is a factor of the share, the second texture one of the colour.
+  float transmission = 0;
+  std::array<float, 3> transmitted{1, 1, 1};
+  ImportedTexture transmission_texture = {}, transmitted_texture = {};
+  float ior = 0;        ///< index of refraction of a clear surface; 0: it is opaque
+  float thickness = 0;  ///< of a clear surface; above 0: it encloses a volume, otherwise it is a thin pane
 
+  std::array<const ImportedTexture*, 5> textures() const {
+    return {&color_texture, &opacity_texture, &normal_texture, &transmitted_texture, &transmission_texture};
+  }
   /// The texture whose coordinates meshes have; they are already mapped by its `to_image`.
   const ImportedTexture& uv_texture() const {
-    return color_texture.image >= 0 ? color_texture : opacity_texture.image >= 0 ? opacity_texture : normal_texture;
+    for (const ImportedTexture* texture : textures())
+      if (texture->image >= 0) return *texture;
+    return color_texture;
   }
   bool operator==(const ImportedMaterial&) const = default;
 };
@@ -72,7 +85,7 @@ struct ImportedScene {
   std::vector<ImportedMaterial> materials;
   std::vector<ImportedMesh> meshes;
   std::vector<ImportedNode> nodes;
-  std::array<double, 3> origin{};  ///< point of the model that all positions are relative to: move_obj_to_origin
+  std::array<double, 3> origin{};  ///< point of the model that all positions are relative to: OBJ in map coordinates
   std::vector<ImportedLoss> losses;
   std::vector<std::string> warnings;
   bool operator==(const ImportedScene&) const = default;

@@ -25,10 +25,7 @@ fs::path reader_program() {
     std::error_code error;
     if (fs::is_regular_file(folder / name, error)) return folder / name;
   }
-  fail({},
-       "models are read by the program {}, which is not installed: build frond where assimp is found (Debian: "
-       "libassimp-dev)",
-       FROND_MODEL_READER_FILE);
+  fail({}, "models are read by the program {}, which is not installed beside frond", FROND_MODEL_READER_FILE);
 }
 
 void check_name(const fs::path& path) {
@@ -72,13 +69,7 @@ std::string problem_of(const ChildResult& child) {
   }
   std::string text = child.err.substr(0, 2000);
   std::ranges::replace(text, '\n', ' ');
-  const auto says = [&text](const char* words) { return text.find(words) != std::string::npos; };
-  if (says("no faces") || says("No meshes remaining") || says("mNumMeshes is 0") || says("it has no triangles"))
-    return "it has no triangles; of a point cloud, MeshLab or CloudCompare makes a mesh";
-  if (says("No suitable reader"))
-    return "its content is not of the format that its name states, or of a version that is not read, such as the "
-           "binary files of glTF 1";
-  if (says("bad_alloc")) return "it needs more memory than 1 GB and 128 times its files' size";
+  if (text == "it has no triangles") return text + "; of a point cloud, MeshLab or CloudCompare makes a mesh";
   return text.empty() ? "the reader ended with " + exit_text(child.status) : text;
 }
 

@@ -95,31 +95,6 @@ AffineMap affine_map(const NodeMap& map) {
   return result;
 }
 
-Vec3d NodeMap::vector(const Vec3d& v) const {
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
-          m[8] * v.x + m[9] * v.y + m[10] * v.z};
-}
-
-Vec3d NodeMap::normal(const Vec3d& n) const {
-  const Vec3d a{m[0], m[1], m[2]}, b{m[4], m[5], m[6]}, c{m[8], m[9], m[10]};
-  const double sign = determinant() < 0 ? -1 : 1;
-  return sign * Vec3d{dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n)};
-}
-
-double NodeMap::determinant() const {
-  return dot(Vec3d{m[0], m[1], m[2]}, cross(Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]}));
-}
-
-NodeMap NodeMap::after(const NodeMap& first) const {
-  NodeMap map;
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 4; ++j) {
-      map.m[4 * i + j] = j == 3 ? m[4 * i + 3] : 0;
-      for (size_t k = 0; k < 3; ++k) map.m[4 * i + j] += m[4 * i + k] * first.m[4 * k + j];
-    }
-  return map;
-}
-
 size_t PlantGeometry::triangle_count() const {
   size_t count = 0;
   for (const PlantMesh& m : meshes) count += m.triangles.size();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,21 +8,9 @@
 #include "core/math/vec.h"
 #include "core/shape.h"
 #include "imports/imported_scene.h"
+#include "imports/node_map.h"
 
 namespace frond {
-
-/// Affine map in double precision, three rows of a 3 x 4 matrix: of a node to the world.
-struct NodeMap {
-  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
-  Vec3d point(const Vec3d& p) const { return vector(p) + Vec3d{m[3], m[7], m[11]}; }
-  Vec3d vector(const Vec3d& v) const;
-  /// Transforms a normal by the cofactor matrix, times the sign of the determinant; not normalized.
-  Vec3d normal(const Vec3d& n) const;
-  double determinant() const;
-  /// Returns this map after `first`.
-  NodeMap after(const NodeMap& first) const;
-};
 
 /// Whether all normals of a mesh have a direction.
 bool has_normals(const ImportedMesh& mesh);

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 #include "core/parallel.h"
 #include "image/image_codec.h"
 #include "image/image_signature.h"
-#include "imports/obj_lines.h"
-#include "imports/uri.h"
+#include "imports/file_in.h"
 #include "system/file_bytes.h"
 
 namespace frond {
@@ -44,26 +44,34 @@ std::string plain_name(std::string_view name) {
   return out.empty() ? "unnamed" : out;
 }
 
-std::string PlantImages::decoded_name(const std::string& name) const {
-  return lower_case(model_.extension().string()) == ".obj" ? name : percent_decoded(name);
+PlantImages::PlantImages(const std::vector<ImportedImage>& images, const fs::path& model,
+                         const std::vector<std::string>& folders, std::string subfolder, const Log& log)
+    : images_(images), model_(model), subfolder_(std::move(subfolder)), log_(log) {
+  for (const std::string& folder : folders) {
+    std::error_code error;
+    folders_.push_back(fs::canonical(folder, error));
+    if (error || !fs::is_directory(folders_.back())) fail({}, "there is no folder \"{}\"", folder);
+  }
 }
 
-/// Exporters write absolute paths of their own machine, and Windows' separators; names in glTF are percent-encoded,
-/// unless an exporter has forgotten it. A file that is not at the path is searched for by its name in the model's
-/// folder and in its subfolder textures.
-fs::path PlantImages::find_file(const std::string& name) const {
-  const fs::path folder = fs::canonical(model_).parent_path();
-  for (std::string text : {name, decoded_name(name)}) {
-    std::ranges::replace(text, '\\', '/');
-    const fs::path path = text;
-    for (const fs::path& candidate : {folder / path, folder / path.filename(), folder / "textures" / path.filename()}) {
-      std::error_code error;
-      const fs::path file = fs::canonical(candidate, error);
-      if (error || !fs::is_regular_file(file, error)) continue;
-      if (std::ranges::mismatch(folder, file).in1 == folder.end()) return file;
+/// Exporters write absolute paths of their own machine. A file that is not at its path is searched for by its name in
+/// the model's folder and in its subfolder textures, and in the folders that the user names.
+fs::path PlantImages::find_file(std::string name) const {
+  std::ranges::replace(name, '\\', '/');
+  const fs::path path = name;
+  const auto found = [](const fs::path& folder, const fs::path& file) {
+    try {
+      return file_in(folder, file.string());
+    } catch (const std::runtime_error&) {
+      return fs::path();
     }
-  }
-  fail({}, "there is no such file in the model's folder or below");
+  };
+  const fs::path own = fs::canonical(model_).parent_path();
+  for (const fs::path& file : {path, path.filename(), "textures" / path.filename()})
+    if (fs::path result = found(own, file); !result.empty()) return result;
+  for (const fs::path& folder : folders_)
+    if (fs::path result = found(folder, path.filename()); !result.empty()) return result;
+  fail({}, "there is no such file in the model's folder or below, or in a folder that the option textures names");
 }
 
 /// Everything that can be wrong with an image is a warning: the material keeps its colour.
@@ -113,7 +121,7 @@ std::string PlantImages::new_path(const std::string& name, const std::string& ex
 std::string PlantImages::original(int32_t image) {
   Decoded& result = *decoded(image);
   if (result.path.starts_with('.')) {
-    std::string name = decoded_name(images_[size_t(image)].name);
+    std::string name = images_[size_t(image)].name;
     std::ranges::replace(name, '\\', '/');
     result.path = new_path(fs::path(name).stem().string(), result.path);
     files_.push_back({result.path, result.bytes});
@@ -134,6 +142,26 @@ std::string PlantImages::tinted_image(int32_t image, const std::array<float, 3>&
         const float v = source.image.at(x, y, channels < 3 ? 0 : c);
         out.at(x, y, c) = to_srgb(std::clamp((source.is_encoded ? to_linear(v) : v) * factor[c], 0.f, 1.f));
       }
+  }
+  path = new_path(name, ".png");
+  files_.push_back({path, image_codec().encode(path, out, {})});
+  return path;
+}
+
+std::string PlantImages::normal_image(int32_t image, const std::array<float, 2>& scale, const std::string& name) {
+  const Image& source = decoded(image)->file.image;
+  if (scale == std::array<float, 2>{1, 1} || source.channels.size() < 3) return original(image);
+  std::string& path = tinted_[{image, {scale[0], scale[1], -1}}];
+  if (!path.empty()) return path;
+  Image out(source.width, source.height, {"R", "G", "B"});
+  for (int y = 0; y < out.height; ++y) {
+    check_stop();
+    for (int x = 0; x < out.width; ++x) {
+      const auto value = [&](size_t c) { return 2 * source.at(x, y, c) - 1; };
+      const Vec3 n{value(0) * scale[0], value(1) * scale[1], value(2)};
+      const float size = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z), 1.f});  // the length has no effect
+      for (size_t c = 0; c < 3; ++c) out.at(x, y, c) = (c == 0 ? n.x : c == 1 ? n.y : n.z) / size / 2 + 0.5f;
+    }
   }
   path = new_path(name, ".png");
   files_.push_back({path, image_codec().encode(path, out, {})});

@@ -23,10 +23,10 @@ struct PlantFile {
 /// Images of a model: decodes them, and makes the files that the scene names.
 class PlantImages {
  public:
-  /// `model` is the model file; `subfolder` the folder of the files to write. All references must outlive this object.
-  PlantImages(const std::vector<ImportedImage>& images, const std::filesystem::path& model, std::string subfolder,
-              const Log& log)
-      : images_(images), model_(model), subfolder_(std::move(subfolder)), log_(log) {}
+  /// `model` is the model file; `folders` are further ones with images; `subfolder` is the folder of the files to
+  /// write. All references must outlive this object. Throws InputError for a folder that does not exist.
+  PlantImages(const std::vector<ImportedImage>& images, const std::filesystem::path& model,
+              const std::vector<std::string>& folders, std::string subfolder, const Log& log);
 
   /// Returns an image's pixels, or nullptr with a warning if there is none that frond can read.
   const ImageFile* pixels(int32_t image);
@@ -34,6 +34,8 @@ class PlantImages {
   std::string original(int32_t image);
   /// Returns the path of a file with the colours times a factor per channel, 8 bits in sRGB, which is made once.
   std::string tinted_image(int32_t image, const std::array<float, 3>& factor, const std::string& name);
+  /// Returns the path of a file with a normal map whose x and y are multiplied, which is made once.
+  std::string normal_image(int32_t image, const std::array<float, 2>& scale, const std::string& name);
   /// Returns the path of a new file with one channel, linear.
   std::string write_grey_image(int width, int height, std::vector<float> values, const std::string& name);
 
@@ -50,13 +52,13 @@ class PlantImages {
   Decoded* decoded(int32_t image);
   /// Returns a path for a file, which no other one has.
   std::string new_path(const std::string& name, const std::string& extension);
-  /// Returns a name of the model without glTF's percent-encoding.
-  std::string decoded_name(const std::string& name) const;
-  /// Returns where a file that the model names is. Throws InputError if it is not in the model's folder.
-  std::filesystem::path find_file(const std::string& name) const;
+  /// Returns where a file that the model names is. Throws InputError if it is in no folder that may be
+  /// read.
+  std::filesystem::path find_file(std::string name) const;
 
   const std::vector<ImportedImage>& images_;
   std::filesystem::path model_;
+  std::vector<std::filesystem::path> folders_;  ///< further ones, canonical
   std::string subfolder_;
   const Log& log_;
   std::map<int32_t, std::unique_ptr<Decoded>> decoded_;

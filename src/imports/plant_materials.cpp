@@ -4,7 +4,9 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -56,6 +58,7 @@ class MaterialWriter {
     textures_.clear();
     add_normal_map(m, out);
   }
+  const LossList& losses() const { return losses_; }
   /// Throws InputError for a rule that no material has used.
   void check_rules(const ImportedScene& scene, const std::vector<bool>& used) const {
     for (const MaterialRule& rule : rules_) {
@@ -110,28 +113,93 @@ class MaterialWriter {
                images_.write_grey_image(file.image.width, file.image.height, std::move(values), name + "-brightness");
   }
 
-  /// Diffuse, or metal: glTF's alpha is the square of its roughness.
+  /// Diffuse, metal or clear: glTF's alpha is the square of its roughness.
   std::string write_default_material(const ImportedMaterial& m, const std::string& name) {
-    const bool is_metal = m.metalness >= 0.5f;
-    text_ += "\n  " + color_parameter(m, name);
-    if (!is_metal) return "diffuse";
-    text_ += fmt::format("\n  \"float roughness\" {} \"bool remaproughness\" false", m.roughness * m.roughness);
+    const std::string roughness =
+        fmt::format("\n  \"float roughness\" {} \"bool remaproughness\" false", m.roughness * m.roughness);
+    if (m.ior > 0) {
+      text_ += fmt::format("\n  \"float eta\" {}", m.ior);
+      if (m.thickness <= 0) return "thindielectric";
+      text_ += roughness;
+      return "dielectric";
+    }
+    if (m.transmission > 0) return write_transmitting_material(m, name);
+    text_ += "\n  " + color(m, "reflectance", m.color, m.color_texture, name + "-color");
+    if (m.metalness < 0.5f) return "diffuse";
+    text_ += roughness;
     return "conductor";
   }
 
-  std::string color_parameter(const ImportedMaterial& m, const std::string& name) {
-    const auto [r, g, b] = m.color;
-    if (!images_.pixels(m.color_texture.image)) return fmt::format("\"rgb reflectance\" [ {} {} {} ]", r, g, b);
+  /// Of the light, a share is transmitted, in a colour of its own, and the rest reflected; an image may be a factor of
+  /// the share.
+  std::string write_transmitting_material(const ImportedMaterial& m, const std::string& name) {
+    const auto factor = [&](std::array<float, 3> c, float by) {
+      for (float& v : c) v *= by;
+      return c;
+    };
+    const ImageFile* share = images_.pixels(m.transmission_texture.image);
+    const auto mapping = mapping_of(m, m.transmission_texture, "image of the transmission");
+    const bool has_map = share && mapping && share->image.channels.size() % 2 == 0;
+    const float reflected = has_map ? 1 : 1 - m.transmission, transmitted = has_map ? 1 : m.transmission;
+    const std::string r =
+        color(m, has_map ? "tex1" : "reflectance", factor(m.color, reflected), m.color_texture, name + "-color");
+    const std::string t = color(m, has_map ? "tex2" : "transmittance", factor(m.transmitted, transmitted),
+                                m.transmitted_texture, name + "-transmitted");
+    if (!has_map) {
+      text_ += "\n  " + r + "\n  " + t;
+      return "diffusetransmission";
+    }
+    const std::string path = opacity_image(m.transmission_texture.image, false, m.name + "-transmission",
+                                           [&m](float v) { return v * m.transmission; });
+    add_texture(name + "-share", "float", path, m.transmission_texture, 1, *mapping);
+    const auto mix = [&](const char* which, const std::string& inputs) {
+      textures_ += fmt::format("Texture \"{}-{}\" \"spectrum\" \"mix\" {} \"texture amount\" \"{}-share\"\n", name,
+                               which, inputs, name);
+      text_ += fmt::format("\n  \"texture {}\" \"{}-{}\"", which, name, which);
+    };
+    mix("reflectance", r + " \"rgb tex2\" [ 0 0 0 ]");
+    mix("transmittance", "\"rgb tex1\" [ 0 0 0 ] " + t);
+    return "diffusetransmission";
+  }
+
+  /// Returns the parameter of a colour, or of the texture of an image that it is a factor of.
+  std::string color(const ImportedMaterial& m, const char* parameter, const std::array<float, 3>& factor,
+                    const ImportedTexture& texture, const std::string& name) {
+    const auto [r, g, b] = factor;
+    const auto mapping = mapping_of(m, texture, "image of the colour");
+    if (!images_.pixels(texture.image) || !mapping) return fmt::format("\"rgb {}\" [ {} {} {} ]", parameter, r, g, b);
     const bool is_grey = std::max({r, g, b}) - std::min({r, g, b}) < 1e-3f;
-    const std::string path = is_grey ? images_.original(m.color_texture.image)
-                                     : images_.tinted_image(m.color_texture.image, m.color, m.name + "-color");
-    add_texture(name + "-color", "spectrum", path, m.color_texture, is_grey && r < 0.999f ? r : 1);
-    return fmt::format("\"texture reflectance\" \"{}-color\"", name);
+    const std::string path =
+        is_grey ? images_.original(texture.image) : images_.tinted_image(texture.image, factor, name);
+    add_texture(name, "spectrum", path, texture, is_grey && r < 0.999f ? r : 1, *mapping);
+    return fmt::format("\"texture {}\" \"{}\"", parameter, name);
+  }
+
+  /// Returns the parameters that map the coordinates of the meshes of a material to those of a texture. If there are
+  /// none, which is a loss, returns nothing.
+  std::optional<std::string> mapping_of(const ImportedMaterial& m, const ImportedTexture& texture,
+                                        const std::string& what) {
+    const ImportedTexture& base = m.uv_texture();
+    if (texture.image < 0 || texture.shares_uv(base)) return "";
+    const auto &a = texture.to_image, &b = base.to_image;
+    const float determinant = b[0] * b[4] - b[1] * b[3];
+    const std::array<float, 4> inverse{b[4], -b[1], -b[3], b[0]};
+    std::array<float, 6> map{};
+    for (size_t row = 0; row < 2; ++row) {
+      for (size_t column = 0; column < 2; ++column)
+        map[3 * row + column] = (a[3 * row] * inverse[column] + a[3 * row + 1] * inverse[2 + column]) / determinant;
+      map[3 * row + 2] = a[3 * row + 2] - map[3 * row] * b[2] - map[3 * row + 1] * b[5];
+    }
+    constexpr float kRounding = 1e-5f;
+    if (texture.uv_set == base.uv_set && determinant != 0 && std::max(std::abs(map[1]), std::abs(map[3])) < kRounding)
+      return fmt::format(" \"float uscale\" {} \"float udelta\" {} \"float vscale\" {} \"float vdelta\" {}", map[0],
+                         map[2], map[4], map[5]);
+    losses_.add_for_material(m.name, what + " with texture coordinates of its own", true);
+    return {};
   }
 
   void add_texture(const std::string& name, const char* kind, const std::string& path, const ImportedTexture& use,
-                   float scale) {
-    std::string more;
+                   float scale, std::string more = "") {
     if (use.wrap == ImportedTexture::Wrap::clamp) more += " \"string wrap\" \"clamp\"";
     if (use.wrap == ImportedTexture::Wrap::mirror)
       log_.warn({}, fmt::format("texture \"{}\" is mirrored beyond its edges: it is repeated instead", name));
@@ -157,47 +225,47 @@ class MaterialWriter {
     if (m.alpha == Alpha::opaque) return {};
     const auto cut = [&m](float v) { return m.alpha == Alpha::mask ? (v >= m.cutoff ? 1.f : 0.f) : v; };
     const bool is_map = images_.pixels(m.opacity_texture.image) && m.opacity_texture.image != m.color_texture.image;
+    const auto mapping = mapping_of(m, is_map ? m.opacity_texture : m.color_texture, "image of the opacity");
     const ImportedTexture& use = is_map ? m.opacity_texture : m.color_texture;
     const float opacity = cut(m.opacity);
     const auto [path, is_new] =
         opacities_.try_emplace({use.image, is_map, m.opacity, m.alpha == Alpha::mask ? m.cutoff : -1.f});
-    if (is_new && opacity > 0) path->second = opacity_image(use.image, is_map, m, cut);
-    if (!path->second.empty()) {
-      add_texture(name + "-alpha", "float", path->second, use, 1);
+    if (is_new && opacity > 0)
+      path->second = opacity_image(use.image, is_map, m.name + "-alpha", [&](float v) { return cut(m.opacity * v); });
+    if (mapping && !path->second.empty()) {
+      add_texture(name + "-alpha", "float", path->second, use, 1, *mapping);
       return fmt::format(" \"texture alpha\" \"{}-alpha\"", name);
     }
     if (opacity <= 0) log_.warn({}, fmt::format("material \"{}\" has opacity 0: it is invisible", m.name));
     return opacity < 1 ? fmt::format(" \"float alpha\" {}", opacity) : std::string();
   }
 
-  /// Returns the path of the image of an opacity, or an empty one if it is 1 everywhere.
-  template <class Cut>
-  std::string opacity_image(int32_t image, bool is_map, const ImportedMaterial& m, const Cut& cut) {
+  /// Returns the path of the image of an opacity, which `map` changes, or an empty one if it is 1 everywhere.
+  template <class Map>
+  std::string opacity_image(int32_t image, bool is_map, const std::string& name, const Map& map) {
     const ImageFile* file = images_.pixels(image);
     if (!file) return {};
     std::vector<float> values;
     for (int y = 0; y < file->image.height; ++y) {
       check_stop();
-      for (int x = 0; x < file->image.width; ++x)
-        values.push_back(cut(m.opacity * opacity_at(file->image, x, y, is_map)));
+      for (int x = 0; x < file->image.width; ++x) values.push_back(map(opacity_at(file->image, x, y, is_map)));
     }
     if (values.size() <= 1 || std::ranges::none_of(values, [](float v) { return v < 1; })) return {};
-    return images_.write_grey_image(file->image.width, file->image.height, std::move(values), m.name + "-alpha");
+    return images_.write_grey_image(file->image.width, file->image.height, std::move(values), name);
   }
 
   void add_normal_map(const ImportedMaterial& m, PlantMaterials& out) {
     if (!images_.pixels(m.normal_texture.image)) return;
-    if (!m.normal_texture.shares_uv(m.uv_texture())) {
-      out.losses.add_for_material(m.name, "normal map with texture coordinates of its own", true);
-      return;
-    }
-    out.text.insert(out.text.size() - 1,
-                    fmt::format("\n  \"string normalmap\" \"{}\"", images_.original(m.normal_texture.image)));
+    if (!m.normal_texture.shares_uv(m.uv_texture()))
+      return losses_.add_for_material(m.name, "normal map with texture coordinates of its own", true);
+    const std::string path = images_.normal_image(m.normal_texture.image, m.normal_scale, m.name + "-normals");
+    out.text.insert(out.text.size() - 1, fmt::format("\n  \"string normalmap\" \"{}\"", path));
   }
 
   const std::vector<MaterialRule>& rules_;
   PlantImages& images_;
   const Log& log_;
+  LossList losses_;
   std::string text_, textures_;
   std::set<std::string> names_;
   std::map<std::tuple<int32_t, bool, float, float>, std::string> opacities_;  ///< image, kind, factor, cutoff; paths
@@ -226,6 +294,7 @@ PlantMaterials plant_materials(const ImportedScene& scene, const std::vector<boo
     }
   }
   writer.check_rules(scene, used);
+  out.losses = writer.losses();
   return out;
 }
 

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/messages/counted.h"
-#include "imports/geometry_losses.h"
 #include "imports/model_reader.h"
 #include "scene/geometry/instance_writer.h"
 #include "shapes/ply_writer.h"
@@ -254,7 +253,10 @@ void add_losses(const ImportedScene& scene, const PlantMaterials& materials, con
   };
   for (const ImportedLoss& loss : scene.losses) add(loss);
   for (const ImportedLoss& loss : materials.losses.all()) add(loss);
-  LossList colors;
+  LossList normals, colors;
+  for (const ImportedMesh& mesh : scene.meshes)
+    if (!mesh.normals.empty() && !has_normals(mesh)) normals.add("normals of a mesh, of which some are 0 or not given");
+  for (const ImportedLoss& loss : normals.all()) add(loss);
   for (size_t i = 0; i < materials.rules.size(); ++i)
     if (materials.rules[i] && materials.rules[i]->mapped.empty() && scene.materials[i].color_texture.image >= 0)
       colors.add_for_material(scene.materials[i].name, fmt::format("colour image {}", summary.images[i][0]));
@@ -307,8 +309,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
                            const std::function<void(const ImportSummary&)>& accept) {
   if (!options.scene.empty() && options.scene.extension() != ".pbrt")
     fail({}, "the scene \"{}\" needs the extension .pbrt", options.scene.string());
-  ImportedScene scene = read_model(options.model);
-  add_geometry_losses(scene);
+  const ImportedScene scene = read_model(options.model);
   for (const std::string& warning : scene.warnings) log.warn({}, warning);
   PlantGeometry geometry = plant_geometry(scene, to_scene(options), options.keeps_objects);
   warn_of_steps(geometry, log);
@@ -317,7 +318,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
                                                       "nodes are left out: their transforms have")));
   const auto sheets = find_double_sheets(geometry, single_sided(scene, options.single_sided), log);
   const std::string stem = stem_of(options.scene);
-  PlantImages images(scene.images, options.model, stem + "-files", log);
+  PlantImages images(scene.images, options.model, options.textures, stem + "-files", log);
   const PlantMaterials materials = plant_materials(scene, used_materials(scene, geometry), options.rules, images, log);
   const ImportSummary summary = summary_of(options, scene, geometry, materials, sheets);
   accept(summary);

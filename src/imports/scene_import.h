@@ -14,6 +14,7 @@ namespace frond {
 struct ImportOptions {
   std::filesystem::path model, scene;  ///< file to read; scene file to write, or empty: nothing is written
   std::vector<MaterialRule> rules = {};
+  std::vector<std::string> textures = {};      ///< further folders with images
   double scale = 1;                            ///< scene units for one unit of the model
   bool z_is_up = false;                        ///< in the model; false: y
   bool keeps_objects = false;                  ///< as plant_geometry

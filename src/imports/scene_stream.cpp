@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kMagic = "frond import 2\n";
+constexpr std::string_view kMagic = "frond import 3\n";
 
 template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires {
@@ -90,7 +90,8 @@ void visit(T& v, Io& io) {
     each(v.image, v.uv_set, v.to_image, v.wrap);
   } else if constexpr (std::is_same_v<Type, ImportedMaterial>) {
     each(v.name, v.color, v.opacity, v.alpha, v.cutoff, v.color_texture, v.opacity_texture, v.normal_texture,
-         v.metalness, v.roughness);
+         v.normal_scale, v.metalness, v.roughness, v.transmission, v.transmitted, v.transmission_texture,
+         v.transmitted_texture, v.ior, v.thickness);
   } else if constexpr (std::is_same_v<Type, ImportedLoss>) {
     each(v.what, v.count, v.materials, v.is_surface);
   } else if constexpr (std::is_same_v<Type, ImportedMesh>) {
@@ -113,14 +114,17 @@ void check_finite(const T& values, const char* problem) {
 }
 
 void check_material(const ImportedMaterial& m, size_t images) {
-  for (const ImportedTexture* t : {&m.color_texture, &m.opacity_texture, &m.normal_texture}) {
+  for (const ImportedTexture* t : m.textures()) {
     check(t->image >= -1 && t->image < int64_t(images), "a material names an image that does not exist");
     check_finite(t->to_image, "a texture has a transform that is not finite");
     check(t->wrap <= ImportedTexture::Wrap::mirror, "a texture has an unknown wrap mode");
   }
   check(m.alpha <= ImportedMaterial::Alpha::blend, "a material has an unknown alpha mode");
-  check_finite(m.color, "a material has a colour that is not finite");
-  check_finite(std::array{m.opacity, m.cutoff, m.metalness, m.roughness}, "a material has a value that is not finite");
+  constexpr const char* kProblem = "a material has a value that is not finite";
+  check_finite(m.color, kProblem);
+  check_finite(m.transmitted, kProblem);
+  check_finite(m.normal_scale, kProblem);
+  check_finite(std::array{m.opacity, m.cutoff, m.metalness, m.roughness, m.transmission, m.ior, m.thickness}, kProblem);
 }
 
 void check_mesh(const ImportedMesh& m, size_t materials) {

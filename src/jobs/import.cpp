@@ -40,6 +40,11 @@ constexpr JobParam kParams[] = {
     JobParam("scale", real, "Metres for one unit of the model.", {.range = {1e-12, 1e12}}),
     JobParam("up", text, "Axis that is up in the model; z is up in the scene. By default y, glTF's axis.",
              {.type = "AXIS", .choices = kAxes}),
+    JobParam(
+        "textures", texts,
+        "Folder with images of the model, beside those in the model's folder and below it. Images are searched for "
+        "by their names.",
+        {.type = "FOLDER", .path = PathUse::read}),
     JobParam("objects", flag,
              "Keep each object of the model as an object of the scene with its name, which frond flux --by instance "
              "measures. By default the meshes of a material are joined."),
@@ -171,6 +176,8 @@ Result import_model(const JobRun& run) {
   const StopScope stop(run.control.stop);
   ImportOptions options{.model = run.args.text("model"), .scene = run.args.text("output"), .rules = rules_of(run)};
   options.scale = scale_of(run);
+  // Images only: no other file is read outside the model's folder.
+  options.textures = run.args.texts("textures");
   options.z_is_up = run.args.text("up") == "z";
   options.keeps_objects = run.args.flag("objects");
   options.single_sided = run.args.texts("single-sided");

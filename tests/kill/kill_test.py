@@ -242,7 +242,6 @@ class Radiometers(FrondTest):
             self.assertIn("--csv", err)
 
 
-@unittest.skipUnless((pathlib.Path(FROND).parent / "frond-assimp").exists(), "frond-assimp is not built")
 class Import(FrondTest):
     """frond import ends at once, and the process that reads the model with it."""
 
