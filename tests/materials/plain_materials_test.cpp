@@ -51,7 +51,7 @@ TEST(Mix, SelectsOneOfManyMaterials) {
   for (const char* select : {"0.34:0.34", "0.66:0.66"}) EXPECT_FLOAT_EQ(f(select), 0.25f) << select;
   EXPECT_THAT(error_of([] {
                 Ready("mix", {words("materials", {"diffuse", "diffuse"}), texture("select", {"0:1"}),
-                              testing::number("float", "amount", {0.5})});
+                              test::number("float", "amount", {0.5})});
               }),
               HasSubstr("\"amount\" has no effect beside \"select\""));
 }
