@@ -1,5 +1,5 @@
-// Files of sums of `frond flux`. The input is the text of the header of one part, NUL, and two arrays of 16 bytes:
-// hashes are added here.
+// Files of sums of `frond flux --resume` and `--merge`, with one part. The input is the text of the header, NUL, and
+// two arrays of 16 bytes: hashes are added here.
 
 #include <cstring>
 
@@ -14,19 +14,19 @@ static void append(std::string& to, uint64_t number) {
 }
 
 FROND_FUZZ_TARGET(sums, bytes) {
-  constexpr size_t kArrayBytes = 16;
   const std::string_view header = fuzz::take_part(bytes);
   std::string file = "frond sums 2\n";
   append(file, 1);
   append(file, header.size());
   file += header;
   append(file, hash_bytes(header));
-  for (int i = 0; i < 2; ++i) {
-    const std::string_view piece = bytes.substr(0, kArrayBytes);
+  constexpr size_t kArrays = 2, kBytes = 16;
+  for (size_t i = 0; i < kArrays; ++i) {
+    const std::string_view piece = bytes.substr(0, kBytes);
     file += piece;
     append(file, hash_bytes(piece));
     bytes.remove_prefix(piece.size());
   }
   const auto path = fuzz::folder().write("flux.sums", file);
-  fuzz::accepts([&] { read_sums(path); });
+  fuzz::accepts([&] { (void)read_sums(path); });
 }

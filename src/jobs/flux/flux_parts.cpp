@@ -35,8 +35,8 @@ std::function<void()> FluxParts::checkpoint(const FluxMeter& meter) {
   const std::chrono::duration<double> interval(checkpoint_seconds(run_.args));
   return [this, &meter, interval, last = Clock::now()]() mutable {
     if (Clock::now() - last < interval) return;
-    const UnstoppableScope whole;
     end(meter);
+    const UnstoppableScope whole;
     try {
       write_sums(file_->checkpoint(), scenes_);
     } catch (const InputError& error) {
@@ -44,6 +44,12 @@ std::function<void()> FluxParts::checkpoint(const FluxMeter& meter) {
     }
     last = Clock::now();
   };
+}
+
+/// A stop does not end it: the identity reads files.
+void FluxParts::end(const FluxMeter& meter) {
+  const UnstoppableScope whole;
+  if (file_) scenes_.back() = meter.part();
 }
 
 Result FluxParts::finish(bool is_complete) {

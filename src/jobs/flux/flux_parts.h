@@ -26,8 +26,8 @@ class FluxParts {
   void begin(FluxMeter& meter, SampleRange paths);
   /// Returns a callback that writes a checkpoint if the last one is older than the interval; empty: there is none.
   std::function<void()> checkpoint(const FluxMeter& meter);
-  /// Keeps the sums of the scene.
-  void end(const FluxMeter& meter) { scenes_.back() = meter.part(); }
+  /// Keeps the sums of the scene, if there is a file for them.
+  void end(const FluxMeter& meter);
   /// Writes the checkpoint or the part. Returns a result without tables.
   Result finish(bool is_complete);
   /// Adds all parts of the next scene, which together have this number of paths. Throws InputError for a part that is
