@@ -21,7 +21,8 @@ constexpr Param kMix[] = {
      .range = {0, 1},
      .doc =
          "Selects one of the materials instead of a blend: of n materials the first below 1/n, the next below 2/n, and "
-         "so on. The texture \"instance\" selects one for each instance."},
+         "so on. The texture \"instance\" selects one for each instance.",
+     .in_place_of_others = true},
 };
 
 // Material "mix". pbrt-v4 chooses one material at random at each hit; here both are evaluated, which has less noise and
