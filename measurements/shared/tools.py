@@ -40,7 +40,8 @@ def write(path, text):
 
 
 def section_marks(name, script=None):
-    return f"<!-- {name}: written by measurements/run {script or name} -->\n", f"<!-- end of {name} -->\n"
+    script = script if script and "/" in script else f"measurements/run {script or name}"
+    return f"<!-- {name}: written by {script} -->\n", f"<!-- end of {name} -->\n"
 
 
 def with_section(page, name, text, script=None):

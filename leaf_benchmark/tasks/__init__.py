@@ -1,0 +1,1 @@
+"""Tasks of the leaf benchmark; make.py writes their meshes."""

@@ -1,0 +1,1 @@
+"""The truth of the leaf benchmark; make.py computes it."""
