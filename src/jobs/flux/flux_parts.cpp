@@ -26,6 +26,7 @@ void FluxParts::begin(FluxMeter& meter, SampleRange paths) {
   const SumsPart& part = found_[scene];
   if (part.begin != paths.begin || (writes_part() && part.end > paths.end))
     fail({}, "{}: \"{}\" has other paths than this command requests", run_.args.spelled("resume"), found_name_);
+  const UnstoppableScope whole;
   meter.add(part, found_name_);
 }
 
