@@ -169,6 +169,38 @@ the weight of the measurements beside the prior.
 """
 
 
+#: Measurements in one direction: angles of incidence and view in degrees, and the azimuth between them.
+CLIPS = {"12°, view 35° in the specular plane": (12, 35, 180), "12°, view 35° on the side of the light": (12, 35, 0),
+         "35°, view 0°": (35, 0, 0), "12°, view 0°": (12, 0, 0)}
+CLIP_LEAVES = ("soybean-lopex", "walnut", "lettuce", "tomato", "maize-lopex", "toyon")
+
+
+def clips():
+    """Fits reflectance factors in one direction of leaf_solved as if they were R; returns the section of docs/fit.md."""
+    def direction(theta, phi):
+        theta, phi = numpy.radians([theta, phi])
+        return [numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)]
+
+    nm = numpy.arange(400, 2501, 20)
+    offsets, ratios = {c: [] for c in CLIPS}, {c: [] for c in CLIPS}
+    for specimen in CLIP_LEAVES:
+        solved = program_csv("table", f"specimen={specimen}", "--wavelengths", ",".join(map(str, nm)), "--angles", "8", "-q", "-o", "-")
+        r = (solved.Rs + solved.Rd).to_numpy()
+        of_r = frond.fit(nm, R=r).contents.set_index("name").value
+        leaf = frond.bsdf(f"leaf_solved,specimen={specimen}", nm)
+        for clip, (incidence, view, azimuth) in CLIPS.items():
+            factor = numpy.pi * numpy.asarray(leaf.f([direction(incidence, 0)], [direction(view, azimuth)]))[0]
+            found = frond.fit(nm, R=factor).contents.set_index("name").value
+            offsets[clip].append((factor - r).mean())
+            ratios[clip].append([found[c] / of_r[c] for c in ALONE])
+    body = []
+    for clip in CLIPS:
+        least, most = numpy.min(ratios[clip], axis=0), numpy.max(ratios[clip], axis=0)
+        body.append([clip, f"{min(offsets[clip]):.3f} to {max(offsets[clip]):.3f}",
+                     *(f"{low:.2f} to {high:.2f}" for low, high in zip(least, most))])
+    return table(["incidence", "mean of factor - R", "chlorophyll over that of R", "water over that of R"], body)
+
+
 def write_leaf(folder, name, spectra):
     path = pathlib.Path(folder) / "leaf.csv"
     spectra.assign(leaf=name).to_csv(path, index=False)
@@ -403,6 +435,7 @@ def main():
     write_section(options.docs / "leaf_models.md", "prospect", plates(5 if options.quick else 50), script="fit")
     if not options.quick:
         write_section(options.docs / "fit.md", "reflectance", reflectance_alone(measured), script="fit")
+        write_section(options.docs / "fit.md", "clips", clips(), script="fit")
     write_section(options.docs / "fit.md", "fit", SECTION.format(
         machine=machine(), version=version("prosail"), summary=summary,
         leaves=table(["leaf", "frond", "frond, R", "frond, T", "structure", "CPU of frond", "PROSPECT-D", "CPU of PROSPECT-D"],

@@ -67,6 +67,10 @@ constexpr JobParam kParams[] = {
               .range = {0, 180},
               .decides = true,
               .quantity = PhysicalQuantity::angle}),
+    JobParam("background", real,
+             "Reflectance of what lies behind the leaf while R is measured, such as the white or black pad of a leaf "
+             "clip; 0: nothing, as in an integrating sphere.",
+             {.default_value = "0", .range = {0, 0.999}, .decides = true}),
     JobParam("structure", text, "Structure of the leaf; by default the better fit.",
              {.choices = kStructures, .decides = true}),
     JobParam("sieve", text, "Absorption with sieve and detour effects; by default the better fit.",
@@ -212,7 +216,8 @@ Result fit_one(const JobRun& run) {
   run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));
   std::string source = file.empty() ? "data" : std::filesystem::path(file).filename().string();
   if (args.given("leaf")) source += ", " + args.text("leaf");
-  const FitReport report{request, fitted, source, args.text("material"), leaf::fit_plates(request.measurements)};
+  const FitReport report{request, fitted, source, args.text("material"),
+                         leaf::fit_plates(request.measurements, request.background)};
   if (args.given("output")) write_text(args.text("output"), fit_scene(report));
   if (args.given("plot")) write_chart(args.text("plot"), fit_chart(report));
   auto facts = fit_facts(report);
@@ -270,7 +275,7 @@ void fit_one_of_many(const Arguments& args, const MaterialInfo& material, leaf::
     leaf.result = leaf::fit_leaf(request, ThreadPool(1), &cache);
     check_fitted(leaf.result.params, material, args.spelled("fix"));
     if (!std::isfinite(leaf.result.rmse)) fail({}, "the search found no leaf");
-    leaf.plates = leaf::fit_plates(request.measurements);
+    leaf.plates = leaf::fit_plates(request.measurements, request.background);
   } catch (const InputError& e) {
     leaf.error = e.what();
   }

@@ -145,6 +145,8 @@ std::string fit_text(const FitReport& report) {
   if (const auto far = std::ranges::count(result.fitted, true, &leaf::FitResult::Fitted::is_outlier); far > 0)
     text += fmt::format("  outliers (residual above 0.06, less weight): {}\n", far);
   text += misfit_text(report);
+  if (report.request.background > 0)
+    text += fmt::format("R is that of the leaf on a background of reflectance {:g}\n", report.request.background);
   if (result.prior) text += prior_text(result) + "\n";
   text += fmt::format("structure of {}, {} the sieve effect\n", result.specimen->name,
                       result.params.sieve_and_detour ? "with" : "without");
@@ -189,6 +191,7 @@ std::vector<Fact> fit_facts(const FitReport& report) {
       {"sieve", r.params.sieve_and_detour},
       {"absorption", std::string(is_prospect(r) ? "prospect" : "baranoski")},
       {"rmse_prospect", report.plates ? report.plates->rmse : kNone},
+      {"background", report.request.background},
       {"prior", r.prior ? r.prior->source : ""}};
   if (r.prior) facts.insert(facts.end(), {{"prior_rmse", r.prior->error}, {"prior_reach_nm", r.prior->reach_nm}});
   return facts;

@@ -135,6 +135,38 @@ TEST(Fit, TakesBothSidesAndSeveralAngles) {
                0.03);
 }
 
+/// R of a leaf on a white pad, from the R and T of both sides: the lower side is lit by diffuse light, whose R and T
+/// are means over the cosines of 8 angles.
+TEST(Fit, TakesABackground) {
+  const TissueParams truth = find_specimen("tomato")->params;
+  const TissueModel model(truth);
+  constexpr double kBackground = 0.9;
+  const std::vector<double> nodes{0.0625, 0.1875, 0.3125, 0.4375, 0.5625, 0.6875, 0.8125, 0.9375};
+  std::vector<double> theta_deg{8};
+  for (const double x : nodes) theta_deg.push_back(180 - std::acos(std::sqrt(x)) * 180 / std::numbers::pi);
+  FitRequest on_pad;
+  on_pad.background = kBackground;
+  for (double nm = 400; nm <= 2500; nm += 30) {
+    const std::vector<Shares> shares = solve(model.at(nm), theta_deg);
+    double r = 0, t = 0;
+    for (size_t i = 1; i < shares.size(); ++i)
+      r += (shares[i].surface + shares[i].subsurface) / 8, t += shares[i].transmitted / 8;
+    const double front = shares[0].surface + shares[0].subsurface;
+    on_pad.measurements.push_back({nm, 8, front + shares[0].transmitted * t * kBackground / (1 - r * kBackground), {}});
+  }
+  FitRequest ignored = on_pad;
+  ignored.background = 0;
+  const FitResult of_pad = fit_leaf(on_pad, ThreadPool(2));
+  const auto off = [&truth](const TissueParams& p, std::string_view name) {
+    return p.number(name) * p.thickness_m / (truth.number(name) * truth.thickness_m) - 1;
+  };
+  EXPECT_LT(std::abs(off(of_pad.params, "chlorophylla")), 0.1);
+  EXPECT_LT(std::abs(of_pad.params.thickness_m / truth.thickness_m - 1), 0.1);
+  EXPECT_LT(of_pad.rmse, 0.01);
+  // Without the background no leaf of the walk is as bright in the near infrared.
+  EXPECT_GT(fit_leaf(ignored, ThreadPool(2)).rmse, 0.02);
+}
+
 TEST(Fit, KeepsWhatIsFixed) {
   const TissueParams truth = another("soybean");
   FitRequest request{.measurements = spectra_of(truth, {8}, 50),

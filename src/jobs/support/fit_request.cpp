@@ -111,6 +111,7 @@ leaf::FitRequest fit_request(const Arguments& args) {
     request.fixed.push_back(std::move(fixed));
   }
   check_contradictions(request, args.spelled("fix"));
+  request.background = args.real("background");
   if (request.like) request.absorption_tables = request.like->params.absorption_tables;
   if (args.given("absorption"))
     request.absorption_tables =

@@ -127,7 +127,7 @@ FitResult fit_leaf(const FitRequest& given, const ThreadPool& pool, FitCache* ca
   FitResult result;
   result.prior = prior;
   result.params = found.space->at(found.logs), result.specimen = &found.space->specimen();
-  for (const auto& [r, t] : found.solved) result.fitted.push_back({r, t, false});
+  for (const auto& [r, t] : found.solved) result.fitted.push_back({on_background(r, t, request.background), t, false});
   compute_statistics(request, rows, found, result);
   result.misfits = misfit_bands(request, result);
   return result;

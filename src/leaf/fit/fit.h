@@ -53,6 +53,8 @@ struct FitRequest {
     bool per_area = false;  ///< `value` is the content, kg/m^2 (leaf/tissue/area_content.h)
   };
   std::vector<Fixed> fixed = {};
+  /// Reflectance of a Lambertian background behind the leaf, in [0, 1), where R is that of both; 0: R is the leaf's.
+  double background = 0;
   /// Lower bound of the standard error that is assumed for a measured R or T.
   double least_error = 0.002;
 };
@@ -94,7 +96,7 @@ struct FitResult {
   const Specimen* specimen = nullptr;  ///< the specimen that the search began with
   std::vector<FittedNumber> numbers;
   std::vector<std::vector<double>> correlations;  ///< of the parameters that are not fixed, in the order of `numbers`
-  /// R and T of the fitted leaf at one measurement.
+  /// R and T of the fitted leaf at one measurement, R with the background.
   struct Fitted {
     double r, t;
     bool is_outlier;  ///< its residual is too large for the others' spread: it has less weight
@@ -107,6 +109,12 @@ struct FitResult {
   double reach_nm = 0;                    ///< the correlation of two residuals is about exp(-distance / reach)
   const StructurePrior* prior = nullptr;  ///< the structure prior that was used, of the request; nullptr: none
 };
+
+/// Returns R of a leaf on a background: light is reflected between both (Stokes 1862). The leaf's lower side and
+/// diffuse light are taken to have the R and T of its upper side and of the beam.
+inline double on_background(double r, double t, double background) {
+  return background == 0 ? r : r + t * t * background / (1 - r * background);
+}
 
 /// Root mean square of the residuals at wavelengths within `nm`, R and T together; none if there are no measurements.
 std::optional<double> rmse_between(const FitRequest& request, const FitResult& result, const Interval& nm);

@@ -139,7 +139,7 @@ double FitProblem::cost(const std::vector<Pair>& values, const VectorXd& logs) c
   double sum = 0;
   for (size_t i = 0; i < values.size(); ++i) {
     const FitRow& row = rows_.rows[i];
-    if (row.r) sum += square(Huber::value(values[i].r - *row.r));
+    if (row.r) sum += square(Huber::value(on_background(values[i].r, values[i].t, request_.background) - *row.r));
     if (row.t) sum += square(Huber::value(values[i].t - *row.t));
   }
   sum *= weight_;
@@ -178,6 +178,11 @@ void FitProblem::for_each_row(const SurfaceExpansion& expansion, const VectorXd&
     for (size_t k = 0; k < expansion.slopes.size(); ++k) {
       const Pair change = expansion.slopes[k].sum(row.angle, row.weights, terms.value);
       by_r[structural_[k]] = change.r, by_t[structural_[k]] = change.t;
+    }
+    if (const double background = request_.background; background > 0) {
+      const double again = background / (1 - value.r * background);
+      by_r = (1 + value.t * value.t * again * again) * by_r + 2 * value.t * again * by_t;
+      value.r = on_background(value.r, value.t, background);
     }
     visit(row, value, by_r, by_t);
   }

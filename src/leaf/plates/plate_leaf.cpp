@@ -108,9 +108,10 @@ struct PlateRow {
   size_t node;  ///< the nearest one: nodes are 1 nm apart
   bool is_t;
   double value;
+  double background;  ///< of R
 };
 
-std::vector<PlateRow> plate_rows(std::span<const LeafMeasurement> measurements) {
+std::vector<PlateRow> plate_rows(std::span<const LeafMeasurement> measurements, double background) {
   constexpr double kMost_deg = 20;
   const std::span<const ProspectNode> nodes = prospect_nodes();
   std::vector<PlateRow> rows;
@@ -118,8 +119,8 @@ std::vector<PlateRow> plate_rows(std::span<const LeafMeasurement> measurements) 
     const double nm = std::round(m.lambda_nm), theta = std::min(m.theta_deg, 180 - m.theta_deg);
     if (theta > kMost_deg || nm < nodes.front().nm || nm > nodes.back().nm) continue;
     const auto node = static_cast<size_t>(nm - nodes.front().nm);
-    if (m.r) rows.push_back({node, false, *m.r});
-    if (m.t) rows.push_back({node, true, *m.t});
+    if (m.r) rows.push_back({node, false, *m.r, background});
+    if (m.t) rows.push_back({node, true, *m.t, 0});
   }
   return rows;
 }
@@ -129,7 +130,8 @@ VectorXd plate_residuals(std::span<const PlateRow> rows, const VectorXd& values)
   VectorXd residuals(static_cast<Index>(rows.size()));
   for (size_t i = 0; i < rows.size(); ++i) {
     const Slab shares = shares_at(leaf, rows[i].node);
-    residuals[static_cast<Index>(i)] = (rows[i].is_t ? shares.t : shares.r) - rows[i].value;
+    residuals[static_cast<Index>(i)] =
+        (rows[i].is_t ? shares.t : on_background(shares.r, shares.t, rows[i].background)) - rows[i].value;
   }
   return residuals;
 }
@@ -222,8 +224,8 @@ std::span<const PlateNumber> plate_numbers() {
 
 const PlateNumber* find_plate_number(std::string_view name) { return find(plate_numbers(), name); }
 
-std::optional<PlateFit> fit_plates(std::span<const LeafMeasurement> measurements) {
-  const std::vector<PlateRow> rows = plate_rows(measurements);
+std::optional<PlateFit> fit_plates(std::span<const LeafMeasurement> measurements, double background) {
+  const std::vector<PlateRow> rows = plate_rows(measurements, background);
   const std::span<const PlateNumber> numbers = plate_numbers();
   if (rows.size() < numbers.size()) return {};
   const auto count = static_cast<Index>(numbers.size());

@@ -50,8 +50,8 @@ struct PlateFit {
 
 /// Returns the leaf of plates with the least squares of R and T, without any prior, from several starts. Uses the
 /// measurements from 400 nm on, at angles of incidence below 20 degrees on either side, for which PROSPECT is made;
-/// nullopt: their values are fewer than the numbers.
-std::optional<PlateFit> fit_plates(std::span<const LeafMeasurement> measurements);
+/// R is on_background. nullopt: their values are fewer than the numbers.
+std::optional<PlateFit> fit_plates(std::span<const LeafMeasurement> measurements, double background = 0);
 
 /// Leaf of the random walk in place of a leaf of plates.
 struct NearestWalk {
