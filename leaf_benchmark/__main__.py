@@ -18,6 +18,8 @@ import subprocess
 import sys
 import tempfile
 
+import numpy
+
 from measurements.shared.tools import machine
 
 from . import checks, measures
@@ -27,6 +29,7 @@ HERE = pathlib.Path(__file__).parent
 TASKS = ["front", "back", "ambient", "glow", "leaf", "canopy"]
 SAMPLES = [1, 8, 64]
 LEAF_SAMPLES = 64
+PATHS = [1024, 16384]  # of a view of the canopy
 SEEDS = (1, 2)
 # Entries in Python find this one, with the packages of leaf_benchmark/run, and this folder.
 ENVIRONMENT = os.environ | {"PATH": f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}",
@@ -86,7 +89,19 @@ def leaf_result(entry, task, folder, _):
             "checks": checks.check(rows, task.leaf)}, took["versions"]
 
 
-RESULTS = {"image": image_result, "leaf": leaf_result}
+def canopy_result(entry, task, folder, _):
+    from .truth import make as truth
+    read = lambda path: numpy.loadtxt(path, delimiter=",", skiprows=1)
+    halves, points = [read(path) for path in truth.files(task)], []
+    for samples in PATHS:
+        outs = [folder / f"{samples}-{seed}.csv" for seed in SEEDS]
+        took = [run(entry, task, samples, seed, out) for seed, out in zip(SEEDS, outs)]
+        found = measures.of_brf([read(out) for out in outs], halves, task.wavelengths_nm)
+        points.append({"samples": samples, "cpu_s": min(t["cpu_s"] for t in took), "rms": found.pop("rms")})
+    return {"points": points, "setup_s": min(t["setup_s"] for t in took), **found}, took[0]["versions"]
+
+
+RESULTS = {"image": image_result, "leaf": leaf_result, "canopy": canopy_result}
 
 
 def measure(entry, of, numbers):

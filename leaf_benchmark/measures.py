@@ -31,7 +31,7 @@ def bias(images, halves, leaf):
     (a, b), (r, s) = (tuple(image[leaf] for image in pair) for pair in (images, halves))
     square = ((a - r) * (b - s) + (a - s) * (b - r)) / 2
     noise, mean = ((a - b)**2 + (r - s)**2) / 2, (a + b - r - s) / 2
-    error = numpy.sqrt((2 * mean**2 * noise + noise**2).sum()) / square.size
+    error = numpy.sqrt((2 * mean**2 * noise).sum()) / square.size  # the mean's own noise contributes the noise's square
     return [root(square.mean() + z * error) for z in (0, -1.96, 1.96)]
 
 
@@ -44,6 +44,17 @@ def of_images(images, halves, leaf):
             | {"all": bias(images, halves, leaf)},
             "median": float(numpy.median(numpy.sqrt(((mean - truth)[leaf]**2).mean(axis=1)))),
             "largest": float(abs(blocks(mean - truth, leaf)).max()), "flip": flip(mean, truth), "mean": float((mean - truth)[leaf].mean())}
+
+
+def of_brf(values, halves, nm):
+    """Relative to the truth's mean of each wavelength, over the views: RMS error of one measurement; bias by wavelength and of all; error
+    of the mean over the views."""
+    scale = numpy.mean(halves, axis=(0, 1))
+    values, halves = numpy.array(values) / scale, numpy.array(halves) / scale
+    whole = numpy.ones(values.shape[1], bool)
+    return {"rms": root(squared(values, halves).mean()),
+            "bias": {str(w): bias(values[..., i], halves[..., i], whole) for i, w in enumerate(nm)} | {"all": bias(values, halves, whole)},
+            "mean": {str(w): float((values - halves)[..., i].mean()) for i, w in enumerate(nm)}}
 
 
 def flip(image, truth):

@@ -62,6 +62,27 @@ def image_table(of, task):
     return table(head, image_rows(of, task))
 
 
+def percent(value):
+    return f"{100 * value:+.1f} %"
+
+
+def canopy_table(of):
+    """Bias of the BRF in per cent of the mean of each wavelength: RMS over the views, and of the mean over the views."""
+    rows, nm = [], json.loads((HERE / "tasks" / "canopy" / "task.json").read_text(encoding="utf-8"))["wavelengths_nm"]
+    for entry in of.values():
+        result = entry["tasks"].get("canopy")
+        if result and "cannot" in result:
+            rows.append((9, [entry["program"], entry["material"], result["cannot"], *[""] * (len(nm) + 1)]))
+        elif result:
+            bias, last = result["bias"], result["points"][-1]
+            text = lambda b: f"{100 * b[0]:.0f} %" if b[1] > 0.5 * b[0] else f"≤ {100 * b[2]:.1f} %"
+            rows.append((bias["all"][0], [entry["program"], entry["material"], text(bias["all"]),
+                         *(f"{text(bias[str(w)])}, {percent(result['mean'][str(w)])}" for w in nm),
+                         f"{1e6 * last['cpu_s'] / last['samples'] / 7:.1f} µs"]))
+    return table(["program", "leaf", "bias of BRF", *(f"{w} nm: bias, mean" for w in nm), "CPU of a path"],
+                 [row for _, row in sorted(rows, key=lambda pair: pair[0])])
+
+
 def checks_of(entry):
     result = entry["tasks"].get("leaf", {})
     if "checks" not in result:
@@ -152,7 +173,7 @@ def draw(of):
 def sections(of):
     """The measured sections of the page."""
     images = "\n".join(f"#### `{task}`\n\n{image_table(of, task)}" for task in IMAGES if any(task in e["tasks"] for e in of.values()))
-    return {"leaf_benchmark_choice": f"{choice(of)}\n{about(of)}", "leaf_benchmark": f"{images}\n#### `leaf`, and checks\n\n{leaf_table(of)}"}
+    return {"leaf_benchmark_choice": f"{choice(of)}\n{about(of)}", "leaf_benchmark": f"{images}\n#### `canopy`\n\n{canopy_table(of)}\n#### `leaf`, and checks\n\n{leaf_table(of)}"}
 
 
 def page(text, of):

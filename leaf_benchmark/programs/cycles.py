@@ -170,7 +170,7 @@ def table(leaf):
             sun.data.energy = 0 if light is None else 1
             if light is not None:
                 sun.rotation_euler = Vector(light).to_track_quat("Z", "Y").to_euler()
-            scene.camera.location = (0, 0, 1e-3 if front else -1e-3)
+            scene.camera.location = (7, 3, 1e-3 if front else -1e-3)  # far from the edge that the sheet's triangles share
             with tempfile.TemporaryDirectory() as folder:
                 out = pathlib.Path(folder) / "image.exr"
                 seconds += render(out, samples if light is None else max(1, samples // 8), seed)
@@ -183,6 +183,6 @@ def main(leaf):
     """`leaf(task)` makes the leaf's surface, as `diffuse` does."""
     sys.stdout, out = sys.stderr, sys.stdout  # Blender reports its progress
     try:
-        interface.main(image(leaf), table(leaf), {"Blender": bpy.app.version_string}, out)
+        interface.main(image(leaf), table(leaf), {"Blender": bpy.app.version_string}, output=out)
     finally:
         sys.stdout = out

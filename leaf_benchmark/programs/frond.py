@@ -70,9 +70,24 @@ def table(leaf):
     return rows
 
 
+def brf(leaf):
+    def measure(task, samples, seed):
+        sun = numpy.radians(task.sun_zenith)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "canopy.pbrt"
+            path.write_text(f'WorldBegin LightSource "distant" "point3 from" [ {numpy.sin(sun)} 0 {numpy.cos(sun)} ] "point3 to" [ 0 0 0 ] '
+                            f'"spectrum L" "stdillum-E" Material {leaf} Shape "plymesh" "string filename" "{task.mesh(task.surfaces[0])}"\n')
+            scene = frond.load(path)
+            start = interface.cpu()
+            found = frond.brf(scene, task.wavelengths_nm, zenith=[-z for z in task.view_zenith],  # frond's are negative on the sun's side
+                              target=tuple(task.target), seed=seed, paths=samples)
+        return numpy.reshape(found["brf"], (len(task.view_zenith), -1)), interface.cpu() - start
+    return measure
+
+
 def main(leaf, *options):
     """`leaf` as in frond's instruments, leaf_solved,incident=reciprocal."""
     name, *words = leaf.split(",")
     parameters = "".join(f' "string {key}" "{value}"' for key, value in (word.split("=") for word in words))
-    interface.main(image(f'"{name}" "string specimen" "soybean"{parameters}', options), table(leaf + ",specimen=soybean"),
-                   {"frond": frond.__version__})
+    material = f'"{name}" "string specimen" "soybean"{parameters}'
+    interface.main(image(material, options), table(leaf + ",specimen=soybean"), {"frond": frond.__version__}, brf(material))

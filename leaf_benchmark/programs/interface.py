@@ -17,13 +17,14 @@ class Task:
         self.folder = pathlib.Path(folder).resolve()
         self.name = self.folder.name
         self.__dict__ |= json.loads((self.folder / "task.json").read_text(encoding="utf-8"))
-        self.leaf = json.loads((self.folder.parent / "leaf.json").read_text(encoding="utf-8"))
+        if not hasattr(self, "leaf"):
+            self.leaf = json.loads((self.folder.parent / "leaf.json").read_text(encoding="utf-8"))
 
     def mesh(self, surface, kind="ply"):
         return str(self.folder / f"{surface['mesh']}.{kind}")
 
     def near_normal(self, side="front"):
-        """R and T of the leaf at 8 degrees, each in three colours."""
+        """R and T of the leaf at 8 degrees, each by wavelength."""
         return self.leaf[side]["R"][0], self.leaf[side]["T"][0]
 
 
@@ -32,9 +33,9 @@ def cpu():
     return sum(u.ru_utime + u.ru_stime for u in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
 
 
-def main(image, table, versions, output=sys.stdout):
+def main(image, table, versions, brf=None, output=sys.stdout):
     """Runs one entry. `image(task, samples, seed, out)` and `table(task, samples, seed)` return CPU seconds without set-up, and the
-    latter the table before; a task that the entry cannot do raises NotImplementedError with the reason."""
+    latter the table before; so does `brf`, `[view][wavelength]`. A task that the entry cannot do raises NotImplementedError with the reason."""
     folder, samples, seed, out = sys.argv[1:]
     task = Task(folder)
     try:
@@ -43,8 +44,11 @@ def main(image, table, versions, output=sys.stdout):
         elif task.kind == "leaf":
             rows, seconds = table(task, int(samples), int(seed))
             write_table(out, rows)
+        elif brf:
+            values, seconds = brf(task, int(samples), int(seed))
+            numpy.savetxt(out, values, delimiter=",", header=",".join(map(str, task.wavelengths_nm)), comments="")
         else:
-            raise NotImplementedError(f"has no task of kind {task.kind}")
+            raise NotImplementedError("measures no BRF")
     except NotImplementedError as reason:
         raise SystemExit(f"cannot: {reason}") from None
     print(json.dumps({"cpu_s": seconds, "setup_s": cpu() - seconds, "versions": versions}), file=output)

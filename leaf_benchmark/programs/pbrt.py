@@ -63,7 +63,6 @@ def table(leaf):
         def draw(sun, sky, front):
             nonlocal seconds
             z = 1 if front else -1
-            # The camera's y axis is up: its image has the directions of view in rows from the leaf's front to its back.
             lines = [f"LookAt 0 0 {z * 1e-3}  0 1 {z * 1e-3}  0 0 1", 'Camera "spherical" "string mapping" "equirectangular"',
                      f'Integrator "path" "integer maxdepth" {1 if sun is not None else 2}',
                      'PixelFilter "box" "float xradius" 0.001 "float yradius" 0.001', film(40, 20), 'Sampler "independent"', "WorldBegin"]
@@ -72,7 +71,7 @@ def table(leaf):
             for up, radiance in zip((1, -1), sky):  # the inside of half a box
                 if radiance:
                     lines += ["AttributeBegin", f'AreaLightSource "diffuse" {WHITE} "float scale" {radiance} "bool twosided" true',
-                              'Material "diffuse" "float reflectance" 0']
+                              'Material "diffuse" "spectrum reflectance" [ 300 0 900 0 ]']
                     for a, b, c in (((-9, -9, 9), (18, 0, 0), (0, 18, 0)), ((-9, -9, 0), (18, 0, 0), (0, 0, 9)), ((-9, 9, 0), (18, 0, 0), (0, 0, 9)),
                                     ((-9, -9, 0), (0, 18, 0), (0, 0, 9)), ((9, -9, 0), (0, 18, 0), (0, 0, 9))):
                         corners = [numpy.array(a) + p + q for p, q in (((0, 0, 0), (0, 0, 0)), (b, (0, 0, 0)), (c, b), (c, (0, 0, 0)))]
@@ -83,7 +82,7 @@ def table(leaf):
                       "[ -8.99 -8.99 0  8.99 -8.99 0  8.99 8.99 0  -8.99 8.99 0 ]"]
             pixels, used = render("\n".join(lines) + "\n", samples, seed)
             seconds += used
-            return pixels
+            return pixels[::-1, ::-1]  # of directions of sight, which are opposite to those of view
         return list(interface.rows_of_images(task, draw)), seconds
     return rows
 

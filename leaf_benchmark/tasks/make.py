@@ -129,6 +129,39 @@ def write_leaf():
         "phi": [4.5 + 9 * i for i in range(40)]})
 
 
+def canopy_leaves(count, side, height, leaf_area):
+    """Corners `[leaf][4][3]` of squares at uniform places, whose fronts look up, all directions alike (spherical)."""
+    random, edge = numpy.random.default_rng(1), leaf_area**0.5
+    place = random.uniform([-side / 2, -side / 2, edge], [side / 2, side / 2, height - edge], (count, 3))
+    z, turn, angle = random.uniform(0, 1, count), 2 * numpy.pi * random.random(count), 2 * numpy.pi * random.random(count)
+    normal = numpy.stack([numpy.sqrt(1 - z * z) * numpy.cos(turn), numpy.sqrt(1 - z * z) * numpy.sin(turn), z], axis=1)
+    x = numpy.cross(normal, numpy.where(abs(z[:, None]) < 0.9, [[0, 0, 1]], [[1, 0, 0]]))
+    x /= numpy.linalg.norm(x, axis=1)[:, None]
+    y = numpy.cross(normal, x)
+    a, b = (edge / 2**0.5 * (c * x + d * y) for c, d in ((numpy.cos(angle)[:, None], numpy.sin(angle)[:, None]),
+                                                         (-numpy.sin(angle)[:, None], numpy.cos(angle)[:, None])))
+    return place[:, None] + numpy.stack([a, b, -a, -b], axis=1)
+
+
+def write_canopy():
+    """A finite canopy of leaf area index 3 in a box of 10 x 10 x 2 m, without soil, measured in its middle."""
+    import frond
+    nm, count, side, height = [450, 550, 670, 800], 100_000, 10, 2
+    corners = canopy_leaves(count, side, height, 3 * side**2 / count)
+    (FOLDER / "canopy").mkdir(exist_ok=True)
+    first = 4 * numpy.arange(count)[:, None]
+    write_meshes(FOLDER / "canopy" / "leaf", corners.reshape(-1, 3), numpy.concatenate([first + [0, 1, 2], first + [0, 2, 3]]))
+    found = frond.spectrophotometer(LEAF, nm, [8, 172], rays=1_000_000).set_index(["theta_deg", "wavelength_nm"])
+    shares = {name: {share: [[round(float(found.loc[(angle, w), share]), 5) for w in nm]] for share in "RT"}
+              for name, angle in (("front", 8), ("back", 172))}
+    write_json(FOLDER / "canopy" / "task.json", {
+        "kind": "canopy", "wavelengths_nm": nm, "units": "metres, degrees; the sun is at (sin, 0, cos) of sun_zenith, and a view of positive "
+        "zenith on its side, in the same plane; target: xmin, xmax, ymin, ymax, z of the square that is measured",
+        "sun_zenith": 30, "view_zenith": [-60, -40, -20, 0, 20, 40, 60], "target": [-1.5, 1.5, -1.5, 1.5, height],
+        "scattering_events": DEPTH, "surfaces": [{"name": "leaf", "mesh": "leaf", "reflectance": None}], "leaf": shares})
+
+
 if __name__ == "__main__":
     write_images()
     write_leaf()
+    write_canopy()

@@ -16,7 +16,9 @@ FOLDER = pathlib.Path(__file__).parent
 BUILD = ROOT / "build" / "leaf_benchmark" / "truth"
 TASKS = ROOT / "leaf_benchmark" / "tasks"
 LEAF = "leaf_solved,specimen=soybean"
+MATERIAL = '"leaf_solved" "string specimen" "soybean"'
 SAMPLES = 1024
+PATHS = 1 << 18  # of a view of the canopy
 SEEDS = (1001, 1002)
 RAYS = 256  # times 4096
 
@@ -36,12 +38,16 @@ def recorded():
 
 def files(task):
     """The files of a task's truth, which are computed if they are missing."""
-    paths = [BUILD / f"{task.name}-{seed}.exr" for seed in SEEDS] if task.kind == "image" else [BUILD / f"{task.name}.csv"]
+    ends = {"image": [f"-{seed}.exr" for seed in SEEDS], "leaf": [".csv"], "canopy": [f"-{seed}.csv" for seed in SEEDS]}
+    paths = [BUILD / f"{task.name}{end}" for end in ends[task.kind]]
     BUILD.mkdir(parents=True, exist_ok=True)
     if not all(path.exists() for path in paths):
         if task.kind == "image":
             for path, seed in zip(paths, SEEDS):
-                by_frond.image('"leaf_solved" "string specimen" "soybean"')(task, SAMPLES, seed, path)
+                by_frond.image(MATERIAL)(task, SAMPLES, seed, path)
+        elif task.kind == "canopy":
+            for path, seed in zip(paths, SEEDS):
+                numpy.savetxt(path, by_frond.brf(MATERIAL)(task, PATHS, seed)[0], delimiter=",", header="BRF by view and wavelength")
         else:
             interface.write_table(paths[0], by_frond.table(LEAF)(task, RAYS, SEEDS[0])[0])
         check(task, paths)
@@ -54,7 +60,7 @@ def check(task, paths):
     found, known = hashlib.sha256(b"".join(content)).hexdigest(), recorded()
     if known.get(task.name, {}).get("sha256", found) != found:
         raise SystemExit(f"the truth of {task.name} is not that of {FOLDER / 'truth.json'}: delete its entry there after a change of the leaf")
-    known[task.name] = {"sha256": found, "samples": [SAMPLES] * 2 if task.kind == "image" else RAYS * 4096, "frond": program("--version").strip()}
+    known[task.name] = {"sha256": found, "samples": {"image": SAMPLES, "leaf": RAYS * 4096, "canopy": PATHS}[task.kind], "frond": program("--version").strip()}
     (FOLDER / "truth.json").write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
 
 
