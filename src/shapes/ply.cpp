@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
 
 #include "core/math/precise_transform.h"
 #include "core/messages/excerpt.h"
@@ -75,9 +78,15 @@ struct MeshLayout {
   uint64_t vertices;  ///< number that the header declares
   VertexLayout vertex;
   size_t indices;  ///< property of a face
+  /// Property of a face with u and v of each corner, as MeshLab writes; used if the vertices have none.
+  std::optional<size_t> corners;
 
   MeshLayout(const PlyElement& vertex_element, const PlyElement& face_element)
       : vertices(vertex_element.count), vertex(vertex_element), indices(index_property(face_element)) {
+    for (size_t i = 0; i < face_element.properties.size() && !vertex.has_uv; ++i) {
+      const PlyProperty& p = face_element.properties[i];
+      if (p.name == "texcoord" && p.count_type && !is_integer(p.type)) corners = i;
+    }
     if (vertices > UINT32_MAX) fail(vertex_element.where, "{} vertices are more than indices can tell", vertices);
     if (face_element.count == 0) fail(face_element.where, "the mesh has no faces");
   }
@@ -94,7 +103,8 @@ std::string unused_content(const PlyHeader& header, const MeshLayout& layout) {
     std::vector<std::string> names;
     for (size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& p = element.properties[i];
-      const bool is_used = is_vertex ? layout.vertex.slots[i] != kNoSlot : i == layout.indices;
+      const bool is_used =
+          is_vertex ? layout.vertex.slots[i] != kNoSlot : i == layout.indices || (is_face && i == layout.corners);
       if (!is_used && p.name != "face_indices") names.push_back(fmt::format("\"{}\"", excerpt(p.name, p.where)));
     }
     const size_t more = names.size() - std::min(names.size(), kMostNamed);
@@ -127,6 +137,7 @@ class BodyReader {
       else
         for_each_row([&](const PlyProperty& p, size_t) { skip(p); }, [] {});
     }
+    if (layout_.corners) divide_vertices();
     if (!source_.at_end())
       source_.fail_here("there is more data after the last element: a count in the header is wrong");
   }
@@ -195,7 +206,58 @@ class BodyReader {
     const size_t least = 3 * Source::least_bytes(element_->properties[indices].type);
     const size_t most = std::min(static_cast<size_t>(element_->count), source_.bytes_left() / least);
     mesh_.triangles.reserve(most);
-    for_each_row([&](const PlyProperty& p, size_t i) { i == indices ? read_face(p) : skip(p); }, [] {});
+    for_each_row(
+        [&](const PlyProperty& p, size_t i) {
+          i == indices ? read_face(p) : i == layout_.corners ? read_corners(p) : skip(p);
+        },
+        [&] {
+          if (layout_.corners) keep_corners();
+        });
+  }
+
+  /// u and v of each corner of the row's face.
+  void read_corners(const PlyProperty& p) {
+    const double count = number(*p.count_type);
+    values_.clear();
+    if (count != 6 && count != 8) return skip_values(p, count);
+    for (int i = 0; i < int(count); ++i) values_.push_back(float(number(p.type)));
+  }
+
+  /// The face may follow its coordinates in the row. Other numbers of values than of corners count as 0.
+  void keep_corners() {
+    std::vector<Vec2>& uvs = corners_ == 3 ? triangle_uvs_ : quad_uvs_;
+    for (size_t i = 0; i < corners_; ++i) {
+      const bool is_there = values_.size() == 2 * corners_ && std::isfinite(values_[2 * i] + values_[2 * i + 1]);
+      uvs.push_back(is_there ? Vec2{values_[2 * i], values_[2 * i + 1]} : Vec2{});
+    }
+    corners_ = 0;
+  }
+
+  /// A vertex whose corners have several coordinates becomes several vertices.
+  void divide_vertices() {
+    std::vector<bool> is_used(mesh_.p.size());
+    std::map<std::tuple<uint32_t, float, float>, uint32_t> others;
+    mesh_.uv.assign(mesh_.p.size(), Vec2{});
+    const auto assign = [&](uint32_t& vertex, const Vec2& uv) {
+      if (vertex >= is_used.size()) return;  // the element "vertex" follows, or has fewer rows
+      if (!is_used[vertex]) {
+        is_used[vertex] = true;
+        mesh_.uv[vertex] = uv;
+      }
+      if (mesh_.uv[vertex] == uv) return;
+      const auto [known, is_new] = others.try_emplace({vertex, uv.x, uv.y}, uint32_t(mesh_.p.size()));
+      if (is_new) {
+        if (mesh_.p.size() >= UINT32_MAX) source_.fail_here("the corners of its faces are more than indices can tell");
+        mesh_.p.push_back(mesh_.p[vertex]);
+        if (!mesh_.n.empty()) mesh_.n.push_back(mesh_.n[vertex]);
+        mesh_.uv.push_back(uv);
+      }
+      vertex = known->second;
+    };
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i)
+      for (size_t k = 0; k < 3; ++k) assign(mesh_.triangles[i][k], triangle_uvs_[3 * i + k]);
+    for (size_t i = 0; i < result_.quads.size(); ++i)
+      for (size_t k = 0; k < 4; ++k) assign(result_.quads[i][k], quad_uvs_[4 * i + k]);
   }
 
   /// Quadrilaterals are stored as such; other polygons are counted and skipped.
@@ -205,6 +267,7 @@ class BodyReader {
       ++result_.ignored;
       return skip_values(p, corners);
     }
+    corners_ = static_cast<size_t>(corners);
     std::array<uint32_t, 4> c{};
     for (size_t i = 0; i < static_cast<size_t>(corners); ++i) c[i] = index(p.type);
     if (corners == 3)
@@ -252,6 +315,9 @@ class BodyReader {
   const PlyElement* element_ = nullptr;
   uint64_t row_ = 0;
   double unused_ = 0;
+  size_t corners_ = 0;         ///< of the row's face; 0: it is skipped
+  std::vector<float> values_;  ///< coordinates of the row's corners
+  std::vector<Vec2> triangle_uvs_, quad_uvs_;
 };
 
 }  // namespace

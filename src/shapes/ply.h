@@ -21,7 +21,8 @@ struct PlyMesh {
 
 /// Reads triangles and quadrilaterals from a PLY file: ASCII, or binary in either byte order, or compressed by gzip;
 /// `vertex` with x y z, optionally nx ny nz and texture coordinates (u v, s t, texture_u texture_v, texture_s
-/// texture_t); `face` with vertex_indices or vertex_index. Other content is skipped and named. Memory is a small
+/// texture_t); `face` with vertex_indices or vertex_index, and texcoord (u v of each corner) if the vertices have none:
+/// vertices whose corners differ are divided. Other content is skipped and named. Memory is a small
 /// multiple of the file's size. Throws InputError with line and column (header, ASCII) or byte offset (binary).
 /// `origin` is subtracted from the vertices before they are rounded.
 PlyMesh read_ply(const std::filesystem::path& path, const Vec3d& origin = {});

@@ -113,6 +113,38 @@ TEST(Ply, KnowsTheNamesOfTextureCoordinates) {
   }
 }
 
+/// The second face, before its vertices, has other coordinates at vertex 1 and the same at vertex 2; of the third one
+/// they are incomplete.
+TEST(Ply, DividesVerticesWhoseCornersHaveSeveralTextureCoordinates) {
+  const PlyMesh read_mesh = read(R"(ply
+format ascii 1.0
+element face 4
+property list uchar float texcoord
+property list uchar int vertex_indices
+element vertex 4
+property float x
+property float y
+property float z
+end_header
+6 0 0 1 0 0 1 3 0 1 2
+6 0.5 0.5 0 1 1 1 3 1 2 3
+2 7 7 3 0 2 3
+8 0 0 1 0 1 1 0 1 4 0 1 3 2
+0 0 0
+1 0 0
+0 1 0
+1 1 0
+)");
+  const TriangleMesh& mesh = read_mesh.mesh;
+  using T = std::array<uint32_t, 3>;
+  EXPECT_THAT(mesh.triangles, ElementsAre(T{0, 1, 2}, T{4, 2, 3}, T{0, 5, 6}));
+  EXPECT_THAT(read_mesh.quads, ElementsAre(std::array<uint32_t, 4>{0, 1, 3, 2}));
+  EXPECT_THAT(mesh.uv,
+              ElementsAre(Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}, Vec2{1, 1}, Vec2{0.5f, 0.5f}, Vec2{0, 0}, Vec2{0, 0}));
+  EXPECT_EQ(mesh.p.size(), mesh.uv.size());
+  EXPECT_EQ(read_mesh.unused, "");
+}
+
 TEST(Ply, TakesWindowsLineEndsAndEmptyLines) {
   std::string text = small("0 0 0 \n\n1 0 0\n0 1 0\n3 0 1 2\n\n  \n");
   for (size_t at = 0; (at = text.find('\n', at)) != text.npos; at += 2) text.insert(at, "\r");
@@ -325,7 +357,8 @@ end_header
 1
 )");
   EXPECT_EQ(mesh.mesh.triangles.size(), 1u);
-  EXPECT_EQ(mesh.unused, R"("u", "red" of 3 vertices; "texcoord", "texnumber" of 1 faces; 2 rows of "edge")");
+  EXPECT_THAT(mesh.mesh.uv, ElementsAre(Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}));
+  EXPECT_EQ(mesh.unused, R"("u", "red" of 3 vertices; "texnumber" of 1 faces; 2 rows of "edge")");
 }
 
 }  // namespace
