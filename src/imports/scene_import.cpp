@@ -185,8 +185,10 @@ std::vector<bool> single_sided(const ImportedScene& scene, const std::vector<std
   return remove;
 }
 
-/// Searches meshes and objects; the results of one material are added.
-std::vector<DoubleSheet> find_double_sheets(PlantGeometry& geometry, const std::vector<bool>& remove, const Log& log) {
+/// Searches meshes and objects; the results of one material are added, and those of materials of one name, which the
+/// back of a leaf with a normal map has.
+std::vector<DoubleSheet> find_double_sheets(const ImportedScene& scene, PlantGeometry& geometry,
+                                            const std::vector<bool>& remove, const Log& log) {
   if (geometry.triangle_count() > kMostSearched) {
     log.info(fmt::format("double leaf sheets are searched up to {} triangles: not here", kMostSearched));
     return {};
@@ -199,6 +201,9 @@ std::vector<DoubleSheet> find_double_sheets(PlantGeometry& geometry, const std::
     is_complete = is_complete && found.has_value();
     for (DoubleSheet sheet : found.value_or(std::vector<DoubleSheet>())) {
       sheet.apart *= stretch;
+      const auto first =
+          std::ranges::find(scene.materials, scene.materials[sheet.material].name, &ImportedMaterial::name);
+      sheet.material = uint32_t(first - scene.materials.begin());
       const auto same = std::ranges::find(all, sheet.material, &DoubleSheet::material);
       if (same == all.end()) {
         all.push_back(sheet);
@@ -316,7 +321,7 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   if (geometry.flat_nodes > 0)
     log.warn({}, fmt::format("{} no inverse", counted(geometry.flat_nodes, "node is left out: its transform has",
                                                       "nodes are left out: their transforms have")));
-  const auto sheets = find_double_sheets(geometry, single_sided(scene, options.single_sided), log);
+  const auto sheets = find_double_sheets(scene, geometry, single_sided(scene, options.single_sided), log);
   const std::string stem = stem_of(options.scene);
   PlantImages images(scene.images, options.model, options.textures, stem + "-files", log);
   const PlantMaterials materials = plant_materials(scene, used_materials(scene, geometry), options.rules, images, log);

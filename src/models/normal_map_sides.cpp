@@ -35,11 +35,32 @@ uint32_t inverted(uint32_t material, ImportedScene& scene) {
   return uint32_t(scene.materials.size() - 1);
 }
 
+/// Removes the vertices that no triangle has: primitives may share one array of vertices.
+void remove_unused(ImportedMesh& mesh) {
+  std::vector<uint32_t> index(mesh.positions.size());
+  for (const auto& t : mesh.triangles)
+    for (const uint32_t i : t) index[i] = 1;
+  uint32_t count = 0;
+  for (size_t i = 0; i < index.size(); ++i) {
+    if (index[i] == 0) continue;
+    mesh.positions[count] = mesh.positions[i];
+    if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
+    if (!mesh.uvs.empty()) mesh.uvs[count] = mesh.uvs[i];
+    index[i] = count++;
+  }
+  mesh.positions.resize(count);
+  if (!mesh.normals.empty()) mesh.normals.resize(count);
+  if (!mesh.uvs.empty()) mesh.uvs.resize(count);
+  for (auto& t : mesh.triangles)
+    for (uint32_t& i : t) i = index[i];
+}
+
 }  // namespace
 
 bool add_by_side(ImportedMesh mesh, const std::vector<std::array<float, 4>>& tangents, ImportedScene& scene,
                  std::vector<uint32_t>& to) {
   const auto add = [&](ImportedMesh added) {
+    remove_unused(added);
     to.push_back(uint32_t(scene.meshes.size()));
     scene.meshes.push_back(std::move(added));
   };

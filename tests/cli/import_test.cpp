@@ -315,6 +315,14 @@ TEST_F(ImportCommand, DoubleSheetsAreReportedAndRemoved) {
   EXPECT_THAT(removed.err, HasSubstr("removed"));
   EXPECT_THAT(removed.out, HasSubstr("leaf: leaf_lambert, 2 triangles"));
   EXPECT_THAT(refusal("plant.obj", {"--single-sided", "stem"}), HasSubstr("has no material \"stem\""));
+  // The back of a leaf with a normal map has mirrored texture coordinates, and a material of its own.
+  folder_.write("leaf.png", png_with_alpha());
+  folder_.write("plant.mtl", "newmtl leaf\nnorm leaf.png\n");
+  folder_.write("plant.obj",
+                std::string("mtllib plant.mtl\n") + kQuad + "usemtl leaf\nf 1/1 2/2 3/3 4/4\nf 4/4 3/3 2/2 1/1\n");
+  EXPECT_THAT(refusal("plant.obj", {leaf[0], leaf[1], "--strict"}), HasSubstr("--single-sided \"leaf\" removes them"));
+  EXPECT_THAT(imported("plant.obj", {leaf[0], leaf[1], "--strict", "--single-sided", "leaf"}).out,
+              HasSubstr("leaf: leaf_lambert, 2 triangles"));
 }
 
 TEST_F(ImportCommand, WhatCannotBeMappedIsNamed) {

@@ -432,6 +432,8 @@ TEST(GltfReader, NormalMapsOfMirroredTextureCoordinates) {
       other["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
           add_accessor(other, bytes, bytes_of<float>(tangents), R"({"componentType":5126,"count":4,"type":"VEC4"})");
     const ImportedScene scene = read_text(other.dump(), {{"a.bin", bytes}});
+    for (const ImportedMesh& mesh : scene.meshes)
+      EXPECT_EQ(mesh.positions.size(), mesh.triangles.size() + 2);  // those of no triangle are removed
     std::vector<float> all;
     for (const ImportedMesh& mesh : scene.meshes) all.push_back(scene.materials[mesh.material].normal_scale[1]);
     EXPECT_EQ(scene.losses.size(), tangent.empty() || (uvs[2] > uvs[0]) == (tangent[0] > 0) ? 0u : 1u);
