@@ -12,8 +12,8 @@ using testing::HasSubstr;
 
 TEST(SpecimenFile, HasNumbersOfLeavesByTheirNames) {
   const std::string text =
-      "# made for this test\nleaf,specimen,structure,sieve,absorption,thickness,anthocyanins,thickness_se,note\n"
-      "A,tomato,,,,3e-4,,0.1,x\nB,,unifacial,true,prospect,,2,,\n";
+      "# made for this test\nleaf,specimen,structure,sieve,absorption,thickness,anthocyanins,thickness_se,status\n"
+      "A,tomato,,,,3e-4,,0.1,fitted\nB,,unifacial,true,prospect,,2,,fitted\n";
   TissueParams a = find_specimen("tomato")->params, b = find_specimen("maize")->params;
   a.thickness_m = 3e-4;
   b.sieve_and_detour = true, b.absorption_tables = AbsorptionTables::prospect, b.number("anthocyanins") = 2;
@@ -37,6 +37,8 @@ TEST(SpecimenFile, WhatIsNoLeafIsRefused) {
               HasSubstr("2 leaves: FILE:LEAF selects one, as in leaves.csv:A"));
   EXPECT_THAT(error("A,,,\n"), HasSubstr("4 fields, but the file has 5 columns"));
   EXPECT_THAT(error_of([] { parse_specimen("name,thickness\n", "leaves.csv", ""); }), HasSubstr("a column \"leaf\""));
+  EXPECT_THAT(error_of([] { parse_specimen("leaf,thicknes\nA,3e-4\n", "leaves.csv", ""); }),
+              HasSubstr("leaves.csv:1:6: there is no parameter \"thicknes\"; did you mean \"thickness\"?"));
 }
 
 }  // namespace

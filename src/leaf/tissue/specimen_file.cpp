@@ -9,6 +9,18 @@
 namespace frond::leaf {
 namespace {
 
+/// Throws InputError for a column that is no parameter: it is probably misspelt. Tables of fits, which have a status,
+/// have columns for other purposes too.
+void check_columns(const TextTable& table) {
+  const auto& names = table.names();
+  if (std::ranges::find(names, "status", &TableField::text) != names.end()) return;
+  std::vector<std::string_view> known{"leaf", "specimen", "structure", "sieve", "absorption"};
+  for (const LeafNumber& n : leaf_parameters()) known.push_back(n.name);
+  for (size_t i = 0; i < names.size(); ++i)
+    if (!names[i].text.empty() && std::ranges::find(known, names[i].text) == known.end())
+      fail(table.names_where(i), "there is no parameter \"{}\"{}", names[i].text, suggestion(names[i].text, known));
+}
+
 /// The leaf of the table's current row.
 TissueParams leaf_of_row(const TextTable& table) {
   const auto field = [&table](std::string_view column) {
@@ -65,6 +77,7 @@ TissueParams parse_specimen(std::string_view text, const std::string& file, std:
   const auto found = std::ranges::find(table.names(), "leaf", &TableField::text);
   if (found == table.names().end())
     fail(table.names_where(), "a specimen file has a column \"leaf\" and one for each parameter, by their names");
+  check_columns(table);
   const auto label = size_t(found - table.names().begin());
   std::optional<TissueParams> leaf;
   std::vector<std::string> names;
