@@ -76,7 +76,7 @@ def compare(scene: str | os.PathLike | Scene, materials: str | os.PathLike | Seq
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, file: str | os.PathLike | Sequence[str | os.PathLike] | None = None, data: str | pandas.DataFrame | Mapping[str, Sequence[float]] | None = None, all_leaves = False, sieve: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, directions: str | os.PathLike | None = None, angle: float = 8.0, background: float = 0.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, prior: str | os.PathLike | Sequence[str | os.PathLike] | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+def fit(wavelengths = None, R = None, T = None, *, path = None, file: str | os.PathLike | Sequence[str | os.PathLike] | None = None, data: str | pandas.DataFrame | Mapping[str, Sequence[float]] | None = None, all_leaves = False, sieve: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, specimens: str | os.PathLike | None = None, directions: str | os.PathLike | None = None, angle: float = 8.0, background: float = 0.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, prior: str | os.PathLike | Sequence[str | os.PathLike] | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
     of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
     per leaf area, and in "status" why it could not be fitted.
@@ -97,6 +97,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, file: str | os.P
     plot: Chart of measured and fitted spectra: .svg or .png.
     leaf: Name of the leaf to fit, if the file has several. Excludes all_leaves.
     all_leaves: Fit every leaf; csv has one row for each, with its parameters, their standard errors and, if it could not be fitted, the reason.
+    specimens: Specimen file to write: the fitted leaves, and "mean", the leaf fitted to the means of their R and T (docs/fit.md).
     directions: Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction between it and the fitted leaf. Excludes all_leaves.
     angle: Angle of incidence, if the file does not state it. Unit: degrees. Range: from 0 to 180. Default: 8.
     background: Reflectance of what lies behind the leaf while R is measured, such as the white or black pad of a leaf clip; 0: nothing, as in an integrating sphere. Range: from 0 to 0.999. Default: 0.
