@@ -104,18 +104,17 @@ def canopy_result(entry, task, folder, _):
 RESULTS = {"image": image_result, "leaf": leaf_result, "canopy": canopy_result}
 
 
-def measure(entry, of, numbers):
-    """Runs an entry on tasks; a dictionary of task and result, or reason. A task with fixed figures keeps them."""
-    results, versions = {}, {}
+def measure(entry, of, numbers, out):
+    """Runs an entry on tasks, and keeps each task's result, or the reason why there is none."""
     for task in of:
+        versions = {}
         with tempfile.TemporaryDirectory(prefix="leaf_benchmark.", dir=os.environ.get("TMPDIR")) as temporary:
             try:
-                results[task.name], found = RESULTS[task.kind](entry, task, pathlib.Path(temporary), numbers)
-                versions |= found
+                result, versions = RESULTS[task.kind](entry, task, pathlib.Path(temporary), numbers)
             except Cannot as reason:
-                results[task.name] = {"cannot": str(reason)}
-        print(entry.name, task.name, brief(results[task.name]), flush=True)
-    return results, versions
+                result = {"cannot": str(reason)}
+        print(entry.name, task.name, brief(result), flush=True)
+        keep(out, entry.name, {task.name: result}, versions)
 
 
 def brief(result):
@@ -132,7 +131,7 @@ def keep(folder, name, results, versions):
     """Merges results into those of record."""
     path = folder / f"{name}.json"
     known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"entry": name, "versions": {}, "tasks": {}}
-    about = {"machine": machine(), "date": datetime.date.today().isoformat()}
+    about = {"machine": machine(), "date": datetime.date.today().isoformat(), "load": max(os.getloadavg())}
     known["versions"] |= versions
     known["tasks"] |= {task: result | about for task, result in results.items()}
     folder.mkdir(parents=True, exist_ok=True)
@@ -159,7 +158,7 @@ def main():
     if not options.page:
         chosen = [path if path.is_dir() else HERE / "entries" / path for path in map(pathlib.Path, options.entry)] if options.entry else entries()
         for entry in chosen:
-            keep(options.out or HERE / "results", entry.name, *measure(entry.resolve(), of, options.samples))
+            measure(entry.resolve(), of, options.samples, options.out or HERE / "results")
     if not options.out:
         from . import page
         page.write_all()

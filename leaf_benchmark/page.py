@@ -128,8 +128,9 @@ def about(of):
     dates = sorted({r["date"] for e in of.values() for r in e["tasks"].values()})
     versions = dict(sorted(v for e in of.values() for v in e["versions"].items()))
     machines = sorted({r["machine"].split(";")[0] for e in of.values() for r in e["tasks"].values()})
-    return (f"Measured by `leaf_benchmark/run` on {', '.join(machines)}, {' to '.join(dict.fromkeys([dates[0], dates[-1]]))}: "
-            f"{', '.join(f'{name} {number}' for name, number in versions.items())}.\n")
+    load = max(r.get("load", 0) for e in of.values() for r in e["tasks"].values())
+    return (f"Measured by `leaf_benchmark/run` on {', '.join(machines)}, {' to '.join(dict.fromkeys([dates[0], dates[-1]]))}, maximum machine "
+            f"load {load:.0f}: {', '.join(f'{name} {number}' for name, number in versions.items())}. CPU is that of a path of `front`.\n")
 
 
 def write_csv(of):

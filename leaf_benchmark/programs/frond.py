@@ -1,15 +1,26 @@
 """frond: renders a task by `frond render`; the table by its Python module."""
 
 import json
+import os
 import pathlib
 import tempfile
 
 import numpy
 
 import frond
-from measurements.shared.tools import FROND, run
+from measurements.shared.tools import FROND, ROOT, run
 
 from . import interface
+
+
+def exported(name, *words):
+    """The path of a file of `frond export leaf_solved`, which is written once."""
+    path = ROOT / "build" / "leaf_benchmark" / name
+    if not path.exists():
+        part = path.with_name(f"{os.getpid()}-{name}")
+        run(FROND, "export", "leaf_solved,specimen=soybean", *words, "-q", "-o", part)
+        part.replace(path)
+    return path
 
 
 def spectrum(nm, values):

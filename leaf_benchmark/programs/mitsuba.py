@@ -92,7 +92,7 @@ def brf(leaf_of):
         square = mi.ScalarTransform4f().translate([SCALE * (x0 + x1) / 2, SCALE * (y0 + y1) / 2, SCALE * z]).scale(
             [SCALE * (x1 - x0) / 2, SCALE * (y1 - y0) / 2, 1])
         for of in (slice(0, 3), slice(1, 4)):
-            part = types.SimpleNamespace(wavelengths_nm=task.wavelengths_nm[of], near_normal=lambda side="front", of=of: tuple(
+            part = types.SimpleNamespace(kind=task.kind, wavelengths_nm=task.wavelengths_nm[of], near_normal=lambda side="front", of=of: tuple(
                 values[of] for values in task.near_normal(side)))
             world = {"type": "scene", "integrator": {"type": "path", "max_depth": task.scattering_events + 1},
                      "sun": {"type": "directional", "direction": [-v for v in toward(task.sun_zenith)], "irradiance": rgb([1, 1, 1])},

@@ -54,7 +54,8 @@ def world(task, folder, leaf):
         name = surface["name"]
         if surface["reflectance"]:
             text += primitive("plastic", name, [*surface["reflectance"], 0, 0])
-        run(folder, "obj2mesh", task.mesh(surface, "obj"), f"{name}.rtm")
+        if not (folder / f"{name}.rtm").exists():
+            run(folder, "obj2mesh", task.mesh(surface, "obj"), f"{name}.rtm")
         text += primitive("mesh", f"mesh-{name}", words=[f"{name}.rtm"], modifier=name)
     return World(folder, text)
 
@@ -74,8 +75,8 @@ def camera_rays(task, samples, seed):
 def image(leaves):
     def render(task, samples, seed, out):
         rays, seconds, channels = camera_rays(task, samples, seed), 0, []
-        for channel, leaf in enumerate(leaves(task)):
-            with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder:
+            for channel, leaf in enumerate(leaves(task)):
                 scene = world(task, pathlib.Path(folder), leaf)
                 channels.append(scene.trace(rays, 16, seed + channel).reshape(task.height, task.width, samples, 3).mean(axis=2))
                 seconds += scene.cpu

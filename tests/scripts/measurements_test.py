@@ -1,4 +1,4 @@
-"""The measurements, most of which take too long for a test: every name that they use is defined, and what they import from each other
+"""The measurements and the leaf benchmark, most of which take too long for a test: every name that they use is defined, and what they import from each other
 exists."""
 
 import ast
@@ -6,7 +6,7 @@ import builtins
 import pathlib
 import unittest
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "measurements"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def names_of(tree):
@@ -26,7 +26,7 @@ def names_of(tree):
 
 class Names(unittest.TestCase):
     def setUp(self):
-        self.trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in FOLDER.rglob("*.py")}
+        self.trees = {path: ast.parse(path.read_text(encoding="utf-8")) for folder in ("measurements", "leaf_benchmark") for path in (ROOT / folder).rglob("*.py")}
         self.assertGreater(len(self.trees), 50)
 
     def test_every_name_is_defined(self):

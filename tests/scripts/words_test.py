@@ -1,4 +1,4 @@
-"""Pages, the measurements that write them, help, Python docstrings and public headers use the words of docs/glossary.md.
+"""Pages, the measurements and the benchmark that write them, help, Python docstrings and public headers use the words of docs/glossary.md.
 
 docs/commands.md and docs/plugins*.md are made of the texts of help, so that a refused word in an option is found there."""
 
@@ -42,7 +42,7 @@ REFUSED = {
 def files():
     pages = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "scenes").rglob("*.md"), *(ROOT / "examples").rglob("*.md")]
     return [p for p in pages if p.name != "glossary.md"] + list((ROOT / "src").rglob("*.h")) + \
-        list((ROOT / "measurements").rglob("*.py")) + list((ROOT / "python" / "frond").glob("*.py*"))
+        list((ROOT / "measurements").rglob("*.py")) + list((ROOT / "leaf_benchmark").rglob("*.py")) + list((ROOT / "python" / "frond").glob("*.py*"))
 
 
 class Words(unittest.TestCase):
