@@ -32,7 +32,7 @@ def bias(images, halves, leaf):
     square = ((a - r) * (b - s) + (a - s) * (b - r)) / 2
     noise, mean = ((a - b)**2 + (r - s)**2) / 2, (a + b - r - s) / 2
     error = numpy.sqrt((2 * mean**2 * noise).sum()) / square.size  # the mean's own noise contributes the noise's square
-    return [root(square.mean() + z * error) for z in (0, -1.96, 1.96)]
+    return [root(square.mean()), root(square.mean() - 1.96 * error), root(max(0, square.mean()) + 1.96 * error)]
 
 
 def of_images(images, halves, leaf):
