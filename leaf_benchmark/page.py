@@ -109,7 +109,7 @@ def choice(of):
         if not able:
             continue
         error = lambda e: sum(e["tasks"][t]["bias"]["all"][0] for t in CHARTED)
-        words = lambda e: [e["material"], *(bias_text(e["tasks"][t]["bias"]["all"]) for t in CHARTED), f"{cost(e):.2g}"]
+        words = lambda e: [e["material"], *(bias_text(e["tasks"][t]["bias"]["all"]) for t in CHARTED), f"{cost(e):.{0 if cost(e) > 9.5 else 1}f}"]
         own = [e for e in able if "frond" not in e["material"] and not e["material"].startswith("`leaf_s")]
         usual, best = min(own or able, key=error), min(able, key=error)
         rows.append([program, *words(usual), *(words(best) if best is not usual else ["–"] * 4)])
