@@ -317,7 +317,9 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   std::set<std::string_view> named;
   for (const Param& p : leaf_params()) {
     // Files, and what needs them.
-    if (p.name.starts_with("pigment") || p.name == "emission" || p.name.starts_with("fluorescence")) continue;
+    if (p.name.starts_with("pigment") || p.name == "emission" || p.name == "specimenfile" ||
+        p.name.starts_with("fluorescence"))
+      continue;
     const std::string name(p.name);
     ParsedParam given = number("float", name, {p.range.max});
     if (p.kind == ParamKind::boolean) given = flag(name, true);
