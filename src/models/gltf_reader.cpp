@@ -257,7 +257,8 @@ class GltfReader {
       const float up = 1 - v;
       std::tie(u, v) = std::tuple(m[0] * u + m[1] * up + m[2], m[3] * u + m[4] * up + m[5]);
     }
-    if (std::ranges::all_of(mesh.uvs, [](const auto& uv) { return std::isfinite(uv[0]) && std::isfinite(uv[1]); })) return;
+    if (std::ranges::all_of(mesh.uvs, [](const auto& uv) { return std::isfinite(uv[0]) && std::isfinite(uv[1]); }))
+      return;
     mesh.uvs.clear();
     losses_.add("TEXCOORD_" + std::to_string(texture.uv_set) + " of a primitive, which has values that are not finite");
   }
