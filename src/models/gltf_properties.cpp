@@ -51,6 +51,10 @@ constexpr GltfProperty kProperties[] = {
     {"textureInfo", "index texCoord scale", read},
     {"KHR_texture_transform", "offset rotation scale texCoord", read},
     {"KHR_materials_diffuse_transmission", "diffuseTransmission*", read},
+    // specularFactor: the gloss is named by the roughness
+    {"KHR_materials_specular", "specularFactor", inert},
+    {"KHR_materials_specular", "specularColorFactor", surface, "colour of the gloss (specularColorFactor)", "[1,1,1]"},
+    {"KHR_materials_specular", "specularTexture specularColorTexture", surface, "specular map"},
     {"KHR_materials_transmission", "transmissionFactor", read},
     {"KHR_materials_transmission", "transmissionTexture", surface, "transmission map"},
     {"KHR_materials_ior", "ior", read},
@@ -72,16 +76,10 @@ constexpr GltfProperty kProperties[] = {
 
 /// Required ones are no error.
 constexpr std::string_view kRead[] = {
-    "KHR_texture_transform",
-    "KHR_mesh_quantization",
-    "KHR_materials_diffuse_transmission",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-    "EXT_mesh_gpu_instancing",
-    "EXT_texture_webp",
+    "KHR_texture_transform",           "KHR_mesh_quantization",      "KHR_materials_diffuse_transmission",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",          "KHR_materials_transmission", "KHR_materials_volume",
+    "EXT_mesh_gpu_instancing",         "EXT_texture_webp",
 #ifdef FROND_HAS_MESHOPTIMIZER
     "EXT_meshopt_compression",
 #endif

@@ -111,7 +111,7 @@ Json everything(std::string& buffer) {
   json["meshes"][0]["name"] = "blade";
   json["materials"][0]["normalTexture"] = Json::parse(R"({"index":1,"scale":0.5})");
   json["materials"].push_back(Json::parse(R"({"name":"thin","pbrMetallicRoughness":{"metallicFactor":0},"extensions":{
-"KHR_materials_emissive_strength":{"emissiveStrength":2},"KHR_materials_diffuse_transmission":{
+"KHR_materials_emissive_strength":{"emissiveStrength":2},"KHR_materials_specular":{"specularFactor":0},"KHR_materials_diffuse_transmission":{
 "diffuseTransmissionFactor":0.25,"diffuseTransmissionColorFactor":[1,0.5,0.25],"diffuseTransmissionTexture":{"index":1},
 "diffuseTransmissionColorTexture":{"index":1,"extensions":{"KHR_texture_transform":{"offset":[0.1,0.2],"rotation":1,
 "scale":[2,3],"texCoord":0}}}}}})"));
@@ -142,6 +142,7 @@ const std::map<std::string_view, std::string> kPlaces{
     {"pbrMetallicRoughness", "/materials/0/pbrMetallicRoughness"},
     {"KHR_materials_pbrSpecularGlossiness", "/materials/3/extensions/KHR_materials_pbrSpecularGlossiness"},
     {"KHR_materials_diffuse_transmission", "/materials/1/extensions/KHR_materials_diffuse_transmission"},
+    {"KHR_materials_specular", "/materials/1/extensions/KHR_materials_specular"},
     {"KHR_materials_transmission", "/materials/2/extensions/KHR_materials_transmission"},
     {"KHR_materials_ior", "/materials/2/extensions/KHR_materials_ior"},
     {"KHR_materials_volume", "/materials/2/extensions/KHR_materials_volume"},
@@ -243,8 +244,8 @@ TEST(GltfReader, UnknownPropertiesAreNamed) {
 
 TEST(GltfReader, ExtensionsThatAreNotReadAreNamed) {
   for (const char* name :
-       {"KHR_materials_unlit", "KHR_materials_sheen", "KHR_materials_specular", "KHR_materials_clearcoat",
-        "KHR_materials_iridescence", "KHR_materials_anisotropy", "KHR_materials_dispersion", "VENDOR_x"}) {
+       {"KHR_materials_unlit", "KHR_materials_sheen", "KHR_materials_clearcoat", "KHR_materials_iridescence",
+        "KHR_materials_anisotropy", "KHR_materials_dispersion", "VENDOR_x"}) {
     const std::string pointer = std::string("/materials/0/extensions/") + name;
     const auto expected = std::string("extension ") + name + " of \"leaf\"";
     EXPECT_THAT(losses_with(pointer.c_str(), "{}"), ElementsAre(expected));
@@ -261,6 +262,13 @@ TEST(GltfReader, ExtensionsThatAreNotReadAreNamed) {
               ElementsAre("extension KHR_materials_variants"));
   EXPECT_THAT(losses_with("/nodes/0/extensions/KHR_lights_punctual", R"({"light":0})"),
               ElementsAre("light (KHR_lights_punctual)"));
+}
+
+TEST(GltfReader, SpecularColourAndMapAreNamed) {
+  const char* const pointer = "/materials/0/extensions/KHR_materials_specular";
+  EXPECT_THAT(losses_with(pointer, R"({"specularFactor":0,"specularColorFactor":[1,1,1]})"), IsEmpty());
+  EXPECT_THAT(losses_with(pointer, R"({"specularColorFactor":[1,0,0],"specularTexture":{"index":0}})"),
+              ElementsAre("colour of the gloss (specularColorFactor) of \"leaf\"", "specular map of \"leaf\""));
 }
 
 TEST(GltfReader, ImagesThatAreNotReadAreNamed) {
