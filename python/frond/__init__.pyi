@@ -356,9 +356,9 @@ def export(material: str | os.PathLike | Sequence[str | os.PathLike] | Scene | S
     """Write a material's BSDF, or a scene, as files for other programs.
 
     material: NAME[,parameter=value...]: material, as in leaf,specimen=maize; for mitsuba a scene file (pbrt-v4 format).
-    format: File format. mitsuba: a scene for Mitsuba 3, as a folder. radiance: BSDF of 145 x 145 Klems patches in XML, for Radiance and WINDOW. csv: R, T and f as a table, a line for each number. npz: the same table for numpy.load. netcdf: the same table as a classic NetCDF file. osl: an OSL shader of three lobes for Blender's Cycles. One of mitsuba, radiance, csv, npz, netcdf, osl.
+    format: File format. mitsuba: a scene for Mitsuba 3, as a folder. radiance: BSDF of 145 x 145 Klems patches in XML, for Radiance and WINDOW. csv: R, T and f as a table, a line for each number. npz: the same table for numpy.load. netcdf: the same table as a classic NetCDF file. osl: an OSL shader of three lobes for Blender's Cycles. gltf: R and T as colours of a glTF material. materialx: R and T as colours of MaterialX surfaces. One of mitsuba, radiance, csv, npz, netcdf, osl, gltf, materialx.
     output: File to write; - is standard output, for text formats only. For mitsuba a folder.
-    wavelengths: Wavelengths, ascending; for osl those of red,green,blue. For mitsuba one (mono variants), those of red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants). Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, ascending; for osl those of red,green,blue, also for gltf and materialx where three are given, else samples of the visible spectrum (by default 380:780:10). For mitsuba one (mono variants), those of red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants). Unit: nm. Range: from 360 to 2500.
     angles: Angles between the normal and the light, on both sides, in a table. Unit: degrees. Range: from 0 to 89.9999.
     view_angles: Angles between the normal and the viewer in a table. Unit: degrees. Range: from 0 to 89.9999.
     view_azimuths: Azimuths from the light to the viewer in a table; the mirror direction is at 180. Unit: degrees. Range: from 0 to 359.9999.

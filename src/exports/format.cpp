@@ -6,7 +6,8 @@
 
 namespace frond {
 
-extern const ExportFormat radiance_format, csv_format, npz_format, netcdf_format, osl_format;
+extern const ExportFormat radiance_format, csv_format, npz_format, netcdf_format, osl_format, gltf_format,
+    materialx_format;
 
 void check_ascending(std::string_view what, const std::vector<double>& numbers) {
   const auto wrong = std::ranges::adjacent_find(numbers, std::greater_equal());
@@ -14,8 +15,8 @@ void check_ascending(std::string_view what, const std::vector<double>& numbers) 
 }
 
 std::span<const ExportFormat* const> export_formats() {
-  static const ExportFormat* const kFormats[] = {&radiance_format, &csv_format, &npz_format, &netcdf_format,
-                                                 &osl_format};
+  static const ExportFormat* const kFormats[] = {&radiance_format, &csv_format,  &npz_format,      &netcdf_format,
+                                                 &osl_format,      &gltf_format, &materialx_format};
   return kFormats;
 }
 

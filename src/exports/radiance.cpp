@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "exports/format.h"
 #include "exports/klems.h"
-#include "spectra/cie.h"
+#include "exports/sheet_colors.h"
+#include "exports/xml_text.h"
+#include "spectra/color/color_space.h"
 
 namespace frond {
 namespace {
-
-/// Returns the visible range in steps of 10 nm.
-std::vector<double> default_wavelengths() {
-  constexpr int kFirst = 380, kLast = 780, kStep = 10;
-  std::vector<double> nm;
-  for (int w = kFirst; w <= kLast; w += kStep) nm.push_back(w);
-  return nm;
-}
 
 /// A block of the file, with the weight of each wavelength.
 struct Block {
@@ -25,64 +17,13 @@ struct Block {
   std::vector<double> weights;  ///< sum to 1
 };
 
-/// Weights of one of X, Y and Z under D65, normalized, for values that are linear between the wavelengths and constant
-/// beyond.
-Block color_block(const char* wavelength, const char* detector, size_t which, const std::vector<double>& nm) {
-  Block block{wavelength, detector, std::vector<double>(nm.size())};
-  double sum = 0;
-  for (double x = kCieRange_nm.min; x <= kCieRange_nm.max; ++x) {
-    const double w = cie_xyz(x)[which] * double(d65()->at(float(x)));
-    const size_t above = size_t(std::ranges::lower_bound(nm, x) - nm.begin());
-    if (above == 0)
-      block.weights.front() += w;
-    else if (above == nm.size())
-      block.weights.back() += w;
-    else {
-      const double t = (x - nm[above - 1]) / (nm[above] - nm[above - 1]);
-      block.weights[above - 1] += (1 - t) * w, block.weights[above] += t * w;
-    }
-    sum += w;
-  }
-  for (double& w : block.weights) w /= sum;
-  return block;
-}
-
 /// Returns the blocks of the file: visible, and the CIE channels.
 std::vector<Block> blocks_of(const std::vector<double>& nm) {
-  std::vector<Block> blocks{color_block("Visible", "ASTM E308 1931 Y.dsp", 1, nm)};
+  std::vector<Block> blocks{{"Visible", "ASTM E308 1931 Y.dsp", d65_weights(1, nm)}};
   if (nm.size() == 1) return blocks;
-  blocks.push_back(color_block("CIE-X", "ASTM E308 1931 X.dsp", 0, nm));
-  blocks.push_back(color_block("CIE-Z", "ASTM E308 1931 Z.dsp", 2, nm));
+  blocks.push_back({"CIE-X", "ASTM E308 1931 X.dsp", d65_weights(0, nm)});
+  blocks.push_back({"CIE-Z", "ASTM E308 1931 Z.dsp", d65_weights(2, nm)});
   return blocks;
-}
-
-/// Escapes text for XML.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  return result;
-}
-
-/// Returns the text without double hyphens, which XML comments must not contain.
-std::string comment(const std::string& text) {
-  std::string result;
-  for (const char c : text) result += c == '-' && result.ends_with('-') ? std::string(" -") : std::string(1, c);
-  return fmt::format("<!-- {} -->\n", result);
 }
 
 std::string basis_text() {
@@ -132,6 +73,42 @@ void append_matrix(const KlemsMatrices& matrices, const Block& block, const Dire
   text += "\t\t\t</ScatteringData>\n\t\t</WavelengthDataBlock>\n\t</WavelengthData>\n";
 }
 
+/// Returns Radiance's own material for a translucent sheet: R and T of the front at normal incidence (the first patch),
+/// in Radiance's linear colours relative to white. It transmits one share of R + T in all channels, here the mean one,
+/// and has no sides. Logs what is lost.
+std::string trans_primitive(const KlemsMatrices& matrices, const std::vector<Block>& blocks, const Log& log) {
+  // color.h of Radiance; white is that of equal energies.
+  constexpr Chromaticities kRadiance{{0.640, 0.330}, {0.290, 0.600}, {0.150, 0.060}, {1.0 / 3, 1.0 / 3}};
+  static const Matrix3 rgb_from_xyz = inverse(xyz_from_rgb(kRadiance));
+  const auto color_of = [&](LitSide lit, bool reflected) {
+    Triple yxz{};
+    for (size_t b = 0; b < blocks.size(); ++b)
+      for (size_t w = 0; w < blocks[b].weights.size(); ++w)
+        for (size_t out = 0; out < KlemsBasis::kPatches; ++out)
+          yxz[b] +=
+              blocks[b].weights[w] * KlemsBasis::projected_solid_angle(out) * matrices.f(w, lit, reflected, 0, out);
+    if (blocks.size() == 1) return Triple{yxz[0], yxz[0], yxz[0]};
+    Triple rgb = rgb_from_xyz * Triple{yxz[1], yxz[0], yxz[2]};
+    for (double& c : rgb) c = std::clamp(c, 0.0, 1.0);
+    return rgb;
+  };
+  const Triple r = color_of(LitSide::front, true), t = color_of(LitSide::front, false),
+               back = color_of(LitSide::back, true);
+  double sum = 0, transmitted = 0, lost = 0, lost_of_back = 0;
+  for (size_t c = 0; c < 3; ++c) sum += r[c] + t[c], transmitted += t[c];
+  const double share = sum > 0 ? transmitted / sum : 0;
+  for (size_t c = 0; c < 3; ++c) {
+    lost = std::max(lost, std::abs(t[c] - share * (r[c] + t[c])));
+    lost_of_back = std::max(lost_of_back, std::abs(back[c] - (1 - share) * (r[c] + t[c])));
+  }
+  log.info(
+      fmt::format("the material trans, in a comment of the file, loses gloss and angles; R and T of the front are off "
+                  "by up to {:.2g}, R of the back by up to {:.2g}",
+                  lost, lost_of_back));
+  return fmt::format("void trans leaf 0 0 7 {:.4f} {:.4f} {:.4f} 0 0 {:.4f} 0", r[0] + t[0], r[1] + t[1], r[2] + t[2],
+                     share);
+}
+
 /// Returns the largest directional albedo of a patch; above 1 the file would create energy.
 double largest_share(const KlemsMatrices& matrices, size_t wavelengths) {
   double largest = 0;
@@ -150,7 +127,7 @@ double largest_share(const KlemsMatrices& matrices, size_t wavelengths) {
 void check_radiance(const ExportRequest& request) { check_ascending("wavelengths", request.wavelengths_nm); }
 
 std::string radiance_file(const ExportMaterial& material, const ExportRequest& request) {
-  const auto nm = request.wavelengths_nm.empty() ? default_wavelengths() : request.wavelengths_nm;
+  const auto nm = request.wavelengths_nm.empty() ? visible_wavelengths() : request.wavelengths_nm;
   const KlemsMatrices matrices(material, nm);
   if (matrices.unconverged() > 0)
     material.log.warn(
@@ -170,11 +147,15 @@ std::string radiance_file(const ExportMaterial& material, const ExportRequest& r
                            "Visible, CIE-X and CIE-Z: f at {} wavelengths from {:g} to {:g} nm, weighed by D65 "
                            "and the CIE 1931 functions, each by itself, so that grey stays grey.",
                            nm.size(), nm.front(), nm.back());
+  const std::vector<Block> blocks = blocks_of(nm);
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += comment("frond " FROND_VERSION " export, " + escaped(material.label));
-  text += comment("f in 1/sr, mean over pairs of patches by projected solid angle. " + of_light);
-  text += comment(fmt::format("The last two rules of integration differ by up to {:.2g} in pi f.", matrices.error()));
-  text += comment("The front (adaxial side) is the front, +z, of a Radiance surface, which WINDOW calls back.");
+  text += xml_comment("frond " FROND_VERSION " export, " + material.label);
+  text += xml_comment("f in 1/sr, mean over pairs of patches by projected solid angle. " + of_light);
+  text +=
+      xml_comment(fmt::format("The last two rules of integration differ by up to {:.2g} in pi f.", matrices.error()));
+  text += xml_comment("The front (adaxial side) is the front, +z, of a Radiance surface, which WINDOW calls back.");
+  text += xml_comment("Without this file, R and T of the front near the normal: " +
+                      trans_primitive(matrices, blocks, material.log));
   text +=
       "<WindowElement xmlns=\"http://windows.lbl.gov\" xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
       "xsi:schemaLocation=\"http://windows.lbl.gov/BSDF-v1.4.xsd\">\n<WindowElementType>System</WindowElementType>\n"
@@ -182,10 +163,10 @@ std::string radiance_file(const ExportMaterial& material, const ExportRequest& r
   text += fmt::format(
       "\t<Material>\n\t\t<Name>{}</Name>\n\t\t<Manufacturer>frond {}</Manufacturer>\n\t\t<DeviceType>Other"
       "</DeviceType>\n\t</Material>\n",
-      escaped(material.label), FROND_VERSION);
+      xml_escaped(material.label), FROND_VERSION);
   text += "\t<DataDefinition>\n\t\t<IncidentDataStructure>Columns</IncidentDataStructure>\n" + basis_text() +
           "\t</DataDefinition>\n";
-  for (const Block& block : blocks_of(nm))
+  for (const Block& block : blocks)
     for (const Direction& d : kDirections) append_matrix(matrices, block, d, text);
   return text + "</Layer>\n</Optical>\n</WindowElement>\n";
 }

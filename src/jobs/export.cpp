@@ -52,10 +52,12 @@ const JobParam kParams[] = {
     JobParam("format", text, kFormatDoc, {.choices = kFormatNames, .decides = true, .required = true}),
     JobParam("output", text, "File to write; - is standard output, for text formats only. For mitsuba a folder.",
              {.type = "FILE|FOLDER", .aliases = "o", .path = PathUse::write, .required = true}),
-    JobParam("wavelengths", numbers,
-             "Wavelengths, ascending; for osl those of red,green,blue. For mitsuba one (mono variants), those of "
-             "red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants).",
-             {.unit = "nm", .range = {360, 2500}, .decides = true}),
+    JobParam(
+        "wavelengths", numbers,
+        "Wavelengths, ascending; for osl those of red,green,blue, also for gltf and materialx where three are given, "
+        "else samples of the visible spectrum (by default 380:780:10). For mitsuba one (mono variants), those of "
+        "red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants).",
+        {.unit = "nm", .range = {360, 2500}, .decides = true}),
     JobParam("angles", numbers, "Angles between the normal and the light, on both sides, in a table.",
              {.unit = "degrees", .range = kBelowHorizon_deg, .decides = true, .quantity = PhysicalQuantity::angle}),
     JobParam("view-angles", numbers, "Angles between the normal and the viewer in a table.",

@@ -18,6 +18,26 @@ HERE = pathlib.Path(__file__).resolve().parent
 VENV = pathlib.Path(os.environ["FROND_EXPORT_VENV"])
 TABLE = ("--wavelengths", "455,551", "--angles", "8,45", "--view-angles", "0,30,60", "--view-azimuths", "0,90,180,270")
 
+MATERIALX = """
+import json, sys
+import MaterialX as mx
+from MaterialX import PyMaterialXGenShader as gen, PyMaterialXGenOsl as osl
+library, document, path = mx.createDocument(), mx.createDocument(), mx.getDefaultDataSearchPath()
+mx.loadLibraries(mx.getDefaultDataLibraryFolders(), path, library)
+mx.readFromXmlFile(document, sys.argv[1])
+document.importLibrary(library)
+valid, message = document.validate()
+generator = osl.OslShaderGenerator.create()
+context = gen.GenContext(generator)
+context.registerSourceCodeSearchPath(path)
+shaders = [m.getName() for m in document.getMaterialNodes()
+           if generator.generate(m.getName(), m, context).getSourceCode("pixel")]
+number = lambda v: list(v.asTuple()) if hasattr(v, "asTuple") else v
+nodes = {n.getName(): {i.getName(): number(i.getValue()) for i in n.getInputs() if i.getValue() is not None}
+         for n in document.getNodes()}
+print(json.dumps({"valid": valid, "message": message, "shaders": shaders, "nodes": nodes}))
+"""
+
 
 def module(name):
     """The Python that has a module: this one, or the one in a folder of its own, into which it is put if it can be."""
@@ -152,6 +172,59 @@ class ReadersTest(FrondTest):
             error = math.sqrt(sum((v - mean)**2 for v in values) / len(values) / (len(values) - 1))
             # Patches are 10 degrees wide; 5 standard errors
             self.assertAlmostEqual(mean, float(r["value"]), delta=0.02 * float(r["value"]) + 5 * error, msg=r)
+
+    def near_normal(self):
+        """R and T of the soybean leaf's front and back, light at 8 degrees, red, green and blue in this order."""
+        with open(self.export("s.csv", "leaf_solved", "--format", "csv", "--wavelengths", "455,551,608", "--angles", 8,
+                              "--view-angles", 0, "--view-azimuths", 0), encoding="utf-8") as file:
+            rows = [r for r in csv.DictReader(line for line in file if line[0] != "#") if r["quantity"] in "RT"]
+        return {side: {q: [float(r["value"]) for r in reversed(rows) if (r["side"], r["quantity"]) == (side, q)]
+                       for q in "RT"} for side in ("front", "back")}
+
+    def assert_near(self, found, right, delta):
+        for a, b in zip(found, right, strict=True):
+            self.assertAlmostEqual(a, b, delta=delta)
+
+    def test_frond_imports_gltf(self):
+        path = self.export("leaf.gltf", "leaf_solved", "--format", "gltf", "--wavelengths", "608,551,455")
+        subprocess.run([FROND, "import", path, "-o", self.folder / "leaf.pbrt", "--strict", "-q"], check=True)
+        text = (self.folder / "leaf-plant.pbrt").read_text()
+        self.assertIn('"string type" "diffusetransmission"', text)
+        front = self.near_normal()["front"]
+        for name, right in (("reflectance", front["R"]), ("transmittance", front["T"])):
+            found = re.search(rf'"rgb {name}" \[ (.*) \]', text)[1].split()
+            self.assert_near(map(float, found), right, 0.0005)
+
+    def test_materialx_validates(self):
+        python = module("MaterialX")
+        path = self.export("leaf.mtlx", "leaf_solved", "--format", "materialx", "--wavelengths", "608,551,455")
+        found = self.python(python, MATERIALX, path)
+        self.assertTrue(found["valid"], found["message"])
+        self.assertEqual(found["shaders"], ["leaf_openpbr", "leaf_lambertian"])
+        for side, right in self.near_normal().items():
+            openpbr, plain = found["nodes"][f"openpbr_{side}"], found["nodes"]
+            w, anisotropy = openpbr["subsurface_weight"], openpbr["subsurface_scatter_anisotropy"]
+            # OpenPBR 1.1, thin-walled: of the subsurface's colour, (1 + g) / 2 is transmitted
+            self.assert_near([w * c * (1 + anisotropy) / 2 for c in openpbr["subsurface_color"]], right["T"], 0.0005)
+            self.assert_near([(1 - w) * b + w * c * (1 - anisotropy) / 2
+                              for b, c in zip(openpbr["base_color"], openpbr["subsurface_color"])], right["R"], 0.0005)
+            self.assert_near(plain[f"reflected_{side}"]["color"], right["R"], 0.0005)
+            self.assert_near(plain[f"transmitted_{side}"]["color"], right["T"], 0.0005)
+
+    def test_radiance_reads_trans(self):
+        """R and T of the line in the comment, under a sky of radiance 1."""
+        program = self.radiance()
+        text = self.export("leaf.xml", "leaf_lambert", "--format", "radiance", "--wavelengths", 551).read_text()
+        trans = re.search("void trans leaf 0 0 7 (.*) -->", text)[1]
+        total, share = float(trans.split()[0]), float(trans.split()[5])
+        for up, right in ((1, total * (1 - share)), (-1, total * share)):
+            (self.folder / "scene.rad").write_text(
+                f"void glow sky\n0\n0\n4 1 1 1 0\nsky source s\n0\n0\n4 0 0 {up} 180\nvoid trans leaf 0 0 7 {trans}\n"
+                "leaf polygon p\n0\n0\n12 -9 -9 0  9 -9 0  9 9 0  -9 9 0\n")
+            (self.folder / "scene.oct").write_bytes(program("oconv", "scene.rad", text=False))
+            found = program("rtrace", "-h", "-ab", "1", "-ad", "4096", "-lw", "1e-6", "scene.oct",
+                            input="0 0 3 0 0 -1\n").split()
+            self.assertAlmostEqual(float(found[0]), right, delta=0.002)
 
     def test_osl_compiles(self):
         compiler = shutil.which("oslc")

@@ -2,26 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "exports/xml_text.h"
+
 namespace frond::mitsuba {
 namespace {
-
-/// Escapes the characters that XML reserves; control characters, which XML does not have, become blanks.
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out;
-}
 
 /// Nine digits distinguish all floats.
 std::string digits(double value) { return fmt::format("{:.9g}", value); }
@@ -34,7 +18,7 @@ void Xml::begin(std::string_view tag, const Attributes& attributes) {
   text_ += '<';
   text_ += tag;
   for (const auto& [name, value] : attributes)
-    if (!value.empty() || name == "value") text_ += fmt::format(" {}=\"{}\"", name, escaped(value));
+    if (!value.empty() || name == "value") text_ += fmt::format(" {}=\"{}\"", name, xml_escaped(value));
 }
 
 void Xml::open(std::string_view tag, const Attributes& attributes) {
@@ -56,13 +40,7 @@ void Xml::element(std::string_view tag, const Attributes& attributes) {
   text_ += "/>\n";
 }
 
-/// Two hyphens would end the comment.
-void Xml::comment(std::string_view text) {
-  std::string safe = escaped(text);
-  for (size_t at = safe.find("--"); at != std::string::npos; at = safe.find("--", at)) safe[at + 1] = ' ';
-  text_.append(2 * tags_.size(), ' ');
-  text_ += fmt::format("<!-- {} -->\n", safe);
-}
+void Xml::comment(std::string_view text) { text_ += std::string(2 * tags_.size(), ' ') + xml_comment(text); }
 
 void Xml::number(std::string_view name, double value) {
   element("float", {{"name", std::string(name)}, {"value", digits(value)}});
