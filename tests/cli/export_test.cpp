@@ -122,14 +122,28 @@ TEST_F(ExportCommand, OslKeepsAllLightOfADiffuseSheet) {
   EXPECT_THAT(o.out, HasSubstr("color(0.400000, 0.400000, 0.400000)"));
 }
 
+TEST_F(ExportCommand, ColoursOfADiffuseSheet) {
+  const auto of = [](const char* format) {
+    const Outcome o =
+        exported({"diffusetransmission,reflectance=0.3,transmittance=0.4", "--format", format, "-o", "-"});
+    EXPECT_EQ(o.code, 0) << o.err;
+    return o;
+  };
+  const Outcome gltf = of("gltf"), materialx = of("materialx");
+  EXPECT_THAT(gltf.err, AllOf(HasSubstr("linear sRGB under D65"), HasSubstr("lost: the back")));
+  EXPECT_THAT(gltf.out, AllOf(HasSubstr("\"diffuseTransmissionFactor\": 0.4"), HasSubstr("\"specularFactor\": 0")));
+  EXPECT_THAT(materialx.err, Not(HasSubstr("lost: the back")));
+  EXPECT_THAT(materialx.out, HasSubstr("\"base_color\" type=\"color3\" value=\"0.5, 0.5, 0.5\""));
+  const Outcome radiance = of("radiance");
+  EXPECT_THAT(radiance.out, HasSubstr("void trans leaf 0 0 7 0.7000 0.7000 0.7000 0 0 0.5714 0"));
+}
+
 TEST_F(ExportCommand, TheSameBytesOnAnyNumberOfThreads) {
-  for (const char* format : {"radiance", "csv", "npz", "osl"}) {
-    std::vector<std::string> words{"leaf_simplified",
-                                   "--format",
-                                   format,
-                                   "-q",
-                                   "--wavelengths",
-                                   std::string(format) == "osl" ? "608,551,455" : "551"};
+  for (const char* format : {"radiance", "csv", "npz", "osl", "gltf", "materialx"}) {
+    const bool is_color =
+        format == std::string("osl") || format == std::string("gltf") || format == std::string("materialx");
+    std::vector<std::string> words{
+        "leaf_simplified", "--format", format, "-q", "--wavelengths", is_color ? "608,551,455" : "551"};
     if (std::string(format) == "osl") words.insert(words.end(), {"--rays", "1e3"});
     for (const char* threads : {"1", "2"}) {
       auto all = words;
@@ -146,7 +160,7 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
   EXPECT_THAT(refusal({"conductor", "--format", "csv", "--wavelengths", "551", "-o", out}), HasSubstr("delta lobe"));
   EXPECT_THAT(refusal({"dielectric,roughness=0.3", "--format", "radiance", "-o", out}), HasSubstr("refracts"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "cvs", "-o", out}),
-              HasSubstr("one of mitsuba, radiance, csv, npz, netcdf, osl is needed; \"cvs\""));
+              HasSubstr("one of mitsuba, radiance, csv, npz, netcdf, osl, gltf, materialx is needed; \"cvs\""));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "-o", out}), HasSubstr("a table needs wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551,550", "-o", out}),
               HasSubstr("wavelengths must ascend: 550 follows 551"));
@@ -163,6 +177,8 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
               AllOf(HasSubstr("--angles is for --format csv, npz, netcdf"), HasSubstr("--rays is for --format osl")));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "osl", "--wavelengths", "551", "-o", out}),
               HasSubstr("takes three wavelengths"));
+  EXPECT_THAT(refusal({"leaf_solved", "--format", "gltf", "--wavelengths", "551", "-o", out}),
+              HasSubstr("a colour takes three wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved,incident=light", "--format", "osl", "-o", out}), HasSubstr("incident=light"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551", "-o", "/nowhere/a"}),
               HasSubstr("/nowhere"));
