@@ -10,7 +10,6 @@ namespace {
 /// the rest in the same colour; with an anisotropy of 1 it only transmits, and the diffuse base reflects. The sum of
 /// two BSDFs, unlike a mix, needs no common share.
 constexpr const char* kSide = R"(  <open_pbr_surface name="openpbr_{0}" type="surfaceshader">
-    <input name="base_weight" type="float" value="1" />
     <input name="base_color" type="color3" value="{1}" />
     <input name="specular_weight" type="float" value="0" />
     <input name="subsurface_weight" type="float" value="{2:.6g}" />

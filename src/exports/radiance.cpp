@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -80,33 +80,29 @@ std::string trans_primitive(const KlemsMatrices& matrices, const std::vector<Blo
   // color.h of Radiance; white is that of equal energies.
   constexpr Chromaticities kRadiance{{0.640, 0.330}, {0.290, 0.600}, {0.150, 0.060}, {1.0 / 3, 1.0 / 3}};
   static const Matrix3 rgb_from_xyz = inverse(xyz_from_rgb(kRadiance));
-  const auto color_of = [&](LitSide lit, bool reflected) {
+  const auto color_of = [&](bool reflected) {
     Triple yxz{};
     for (size_t b = 0; b < blocks.size(); ++b)
       for (size_t w = 0; w < blocks[b].weights.size(); ++w)
         for (size_t out = 0; out < KlemsBasis::kPatches; ++out)
-          yxz[b] +=
-              blocks[b].weights[w] * KlemsBasis::projected_solid_angle(out) * matrices.f(w, lit, reflected, 0, out);
+          yxz[b] += blocks[b].weights[w] * KlemsBasis::projected_solid_angle(out) *
+                    matrices.f(w, LitSide::front, reflected, 0, out);
     if (blocks.size() == 1) return Triple{yxz[0], yxz[0], yxz[0]};
     Triple rgb = rgb_from_xyz * Triple{yxz[1], yxz[0], yxz[2]};
     for (double& c : rgb) c = std::clamp(c, 0.0, 1.0);
     return rgb;
   };
-  const Triple r = color_of(LitSide::front, true), t = color_of(LitSide::front, false),
-               back = color_of(LitSide::back, true);
-  double sum = 0, transmitted = 0, lost = 0, lost_of_back = 0;
-  for (size_t c = 0; c < 3; ++c) sum += r[c] + t[c], transmitted += t[c];
-  const double share = sum > 0 ? transmitted / sum : 0;
-  for (size_t c = 0; c < 3; ++c) {
-    lost = std::max(lost, std::abs(t[c] - share * (r[c] + t[c])));
-    lost_of_back = std::max(lost_of_back, std::abs(back[c] - (1 - share) * (r[c] + t[c])));
-  }
+  const Triple r = color_of(true), t = color_of(false);
+  Triple total{};
+  double sum = 0, transmitted = 0, lost = 0;
+  for (size_t c = 0; c < 3; ++c) sum += total[c] = std::min(r[c] + t[c], 1.0), transmitted += t[c];
+  const double share = sum > 0 ? std::min(transmitted / sum, 1.0) : 0;
+  for (size_t c = 0; c < 3; ++c) lost = std::max(lost, std::abs(t[c] - share * total[c]));
   log.info(
-      fmt::format("the material trans, in a comment of the file, loses gloss and angles; R and T of the front are off "
-                  "by up to {:.2g}, R of the back by up to {:.2g}",
-                  lost, lost_of_back));
-  return fmt::format("void trans leaf 0 0 7 {:.4f} {:.4f} {:.4f} 0 0 {:.4f} 0", r[0] + t[0], r[1] + t[1], r[2] + t[2],
-                     share);
+      fmt::format("the material trans, in a comment of the file, loses gloss, angles and the back; R and T of the "
+                  "front are off by up to {:.2g}",
+                  lost));
+  return fmt::format("void trans leaf 0 0 7 {:.4f} 0 0 {:.4f} 0", fmt::join(total, " "), share);
 }
 
 /// Returns the largest directional albedo of a patch; above 1 the file would create energy.
