@@ -94,7 +94,7 @@ python_venv() {
 # Adds the Python module to later builds, and makes the environment of tests and measurements; fails if PyPI's packages cannot be
 # installed. Mitsuba's LLVM variants load libllvm 19.
 with_python_module() {
-  python_venv python-venv nanobind==3.1.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 xarray pytest nbclient ipykernel mitsuba==3.9.1 pvlib==0.16.1 reuse==6.2.0 ||
+  python_venv python-venv nanobind==3.1.0 nanobind-backend==1.0.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 xarray pytest nbclient ipykernel mitsuba==3.9.1 pvlib==0.16.1 reuse==6.2.0 ||
     return 1
   if apt-cache show libllvm19 >/dev/null 2>&1; then install_missing libllvm19; fi
   configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
