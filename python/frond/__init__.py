@@ -16,6 +16,9 @@ and column; messages go to the logger "frond" of the module `logging`. Angles ar
 imported with the first array, pandas, where it is installed, with the first table.
 """
 
+import pathlib as _pathlib
+import warnings as _warnings
+
 from . import _jobs
 from ._errors import InputError
 from ._frond import version as __version__
@@ -26,6 +29,11 @@ from ._measure import (Fit, bench, brf, compare, conform, fit, flux, goniophotom
 from ._bsdf import Bsdf, FlatBsdf, LeafTable, bsdf, leaf_table
 
 Picture = Image  # the older name
+
+# A file of the other project may lie in place of this one, or disappear with it.
+if next(_pathlib.Path(__file__).parents[1].glob("frond-*.dist-info"), None):
+    _warnings.warn("another project of the name frond is installed here too, with a module of the same name: "
+                   "pip uninstall frond frond-render, then install frond-render again", stacklevel=2)
 
 globals().update({name: function for name, function in _jobs.FUNCTIONS.items() if name not in globals()})
 

@@ -7,7 +7,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
 VERSION = re.search(r"project\(frond VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
-NAMED = r"\bfrond[-_ ](\d+\.\d+\.\d+)"
+NAMED = r"\bfrond(?:_render)?[-_ ](\d+\.\d+\.\d+)"
 
 
 @pytest.mark.parametrize("file, pattern", [
