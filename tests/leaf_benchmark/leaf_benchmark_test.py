@@ -9,11 +9,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-try:
-    import numpy
-    import pandas
-except ImportError as missing:
-    raise unittest.SkipTest(str(missing)) from None
+import numpy
+import pandas
 
 from leaf_benchmark import __main__ as benchmark, checks, measures, page
 from leaf_benchmark.programs import interface
