@@ -44,7 +44,7 @@ class Mix final : public Material {
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     if (select_) {
       const float at = select_->evaluate(hit.at) * float(materials_.size());
-      const auto index = static_cast<size_t>(std::max(at, 0.f));
+      const auto index = static_cast<size_t>(std::max(0.f, at));
       return materials_[std::min(index, materials_.size() - 1)]->evaluate(hit, lambda, arena);
     }
     const float amount = std::clamp(amount_->evaluate(hit.at), 0.f, 1.f);

@@ -352,7 +352,7 @@ TEST_F(FittingMany, WritesASpecimenFile) {
         EXPECT_NEAR(n.value(leaf) / fits.number(row, std::string(n.name)), 1, 1e-8) << n.name;
       }
   }
-  EXPECT_EQ(leaf.number("protein"), 0);  // which the specimen has, and a fit with PROSPECT's absorption has not
+  EXPECT_EQ(leaf.number("protein"), 0);  // PROSPECT-D has no protein, the specimen has
   EXPECT_EQ(leaf, leaf::parse_specimen(bytes_of(path("fits.csv")), "fits.csv", "b"));  // tables of fits have the same
   const auto r = [&](const char* name) {
     const auto done = frond_command({"spectrophotometer", "leaf_solved,specimenfile=" + path("leaves.csv") + ":" + name,

@@ -58,8 +58,7 @@ std::optional<std::array<double, 2>> period_of(const Arguments& args);
 /// Warns if the time limit ended a measurement before --paths, or before its standard error was as small as --rms.
 void warn_of_time_limit(const JobRun& run, uint64_t paths, double error);
 /// Returns the range of --samples, or all paths. Both ends are multiples of `block`, except the end of all paths,
-/// `total`:
-/// --paths, or more if the measurement needs them.
+/// `total`: --paths, or more if the measurement needs them.
 SampleRange path_range_of(const Arguments& args, uint64_t block, uint64_t total);
 /// Returns the names of --part and its checkpoint, or of the partial result beside --csv; nullopt if none of --part,
 /// --checkpoint and --resume is given.
