@@ -3,6 +3,7 @@ records, so that a new option is tested too. After reports of keywords of a sign
 
 import inspect
 import re
+import tempfile
 from pathlib import Path
 
 import frond
@@ -141,7 +142,9 @@ def test_each_keyword_of_load(param):
     assert scene.render(2).array.size > 0
 
 
-SESSION = frond.Session(threads=1, cache=False)
+TABLES = tempfile.TemporaryDirectory()
+#: With a cache: a leaf of a scene is prepared once, not for each call.
+SESSION = frond.Session(threads=1, cache=TABLES.name)
 
 
 def test_keywords_of_load_that_are_none():

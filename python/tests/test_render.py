@@ -163,7 +163,7 @@ def test_the_lock_is_free_while_rendering(scene_text):
     thread = threading.Thread(target=work)
     thread.start()
     before = count[0]
-    scene.render(20_000)
+    scene.render(4_000)
     during = count[0] - before
     over.set()
     thread.join()

@@ -8,6 +8,7 @@ import decimal
 import enum
 import fractions
 import pathlib
+import tempfile
 
 import frond
 import numpy
@@ -112,7 +113,9 @@ REFUSED = [
     ([[450, 551], [600, 700]], "list"), ([numpy.ones(2)], "numpy.ndarray"), (["green"], "green"), (pathlib.Path("nm.csv"), "Path|nm.csv"),
 ]
 
-SESSION = frond.Session(threads=1, cache=False)
+TABLES = tempfile.TemporaryDirectory()
+#: With a cache: a leaf of a scene is prepared once, not for each call.
+SESSION = frond.Session(threads=1, cache=TABLES.name)
 SMALL = {"rays": 100, "session": SESSION}
 
 

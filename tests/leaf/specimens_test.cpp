@@ -56,8 +56,7 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
     const size_t said = specimen.source.find("RMSE ");
     if (said == std::string_view::npos || specimen.source.find("PROSPECT") != std::string_view::npos) continue;
     const std::string species = name.substr(0, name.find('-'));
-    if (!slow_tests() && species != "lettuce" && species != "grape" && species != "soybean")
-      continue;  // one of each file
+    if (!slow_tests() && species != "soybean") continue;  // the least wavelengths
     ++fitted;
     const bool is_of_davis = species == "grape" || species == "toyon";
     const auto measurements = read_measured_spectra(folder + (species == "soybean" ? "lopex93_soybean.csv"
@@ -67,7 +66,7 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
                                   .measurements;
     EXPECT_NEAR(rmse(specimen, measurements), std::stod(std::string(specimen.source.substr(said + 5))), 2e-4) << name;
   }
-  EXPECT_EQ(fitted, slow_tests() ? 7 : 3);
+  EXPECT_EQ(fitted, slow_tests() ? 7 : 1);
 }
 
 }  // namespace
