@@ -276,7 +276,7 @@ TEST(Architecture, TheRootHoldsWhatIsListedHere) {
       ".ci .clang-format .clang-tidy .gitattributes .github .gitignore CHANGELOG.md CITATION.cff CMakeLists.txt "
       "CMakePresets.json CONTRIBUTING.md HACKING.md LICENSE LICENSES NOTICE README.md REUSE.toml SECURITY.md bench "
       "cmake "
-      "docs examples exports joss leaf_benchmark measurements mkdocs.yml pyproject.toml python scenes scripts src "
+      "docs examples exports leaf_benchmark measurements mkdocs.yml pyproject.toml python scenes scripts src "
       "tests");
   const std::set<std::string> allowed(std::istream_iterator<std::string>(listed), {});
   const std::set<std::string> found = names_in_root();
