@@ -45,6 +45,13 @@ install_missing() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# seconds COMMAND...: runs it, and sets took to the seconds that it took.
+seconds() {
+  local start=$SECONDS
+  "$@"
+  took=$((SECONDS - start))
+}
+
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
 
 # quietly COMMAND...: runs it in the root; prints its output only if it fails.
@@ -114,6 +121,9 @@ build_preset() {
   configure "$1"
   with_progress cmake --build --preset "$@"
 }
+
+# install_compiler PRESET: installs its compiler, if that is not g++.
+install_compiler() { if [ "$1" = clang ]; then install_missing clang-19; fi; }
 
 # build TARGET...: builds targets of the preset release.
 build() {

@@ -274,9 +274,10 @@ std::set<std::string> names_in_root() {
 TEST(Architecture, TheRootHoldsWhatIsListedHere) {
   std::istringstream listed(
       ".ci .clang-format .clang-tidy .gitattributes .github .gitignore CHANGELOG.md CITATION.cff CMakeLists.txt "
-      "CMakePresets.json CONTRIBUTING.md HACKING.md LICENSE LICENSES NOTICE README.md REUSE.toml SECURITY.md bench "
+      "CMakePresets.json CONTRIBUTING.md Dockerfile HACKING.md LICENSE LICENSES NOTICE README.md REUSE.toml "
+      "SECURITY.md bench "
       "cmake "
-      "docs examples exports leaf_benchmark measurements mkdocs.yml pyproject.toml python scenes scripts src "
+      "docs examples exports leaf_benchmark measurements mkdocs.yml packaging pyproject.toml python scenes scripts src "
       "tests");
   const std::set<std::string> allowed(std::istream_iterator<std::string>(listed), {});
   const std::set<std::string> found = names_in_root();

@@ -1,4 +1,4 @@
-"""CMakePresets.json: what runs under ThreadSanitizer is there."""
+"""CMakePresets.json: what runs under ThreadSanitizer is there, and the compiler of the preset clang is installed."""
 
 import fnmatch
 import json
@@ -30,6 +30,14 @@ class ThreadSanitizer(unittest.TestCase):
             self.assertTrue(used, module)
             unused -= used
         self.assertFalse(unused)
+
+
+class Compiler(unittest.TestCase):
+    def test_the_package_of_clang_is_that_of_the_preset(self):
+        presets = json.loads((ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
+        clang, = (p for p in presets["configurePresets"] if p["name"] == "clang")
+        setup = (ROOT / "scripts" / "setup.sh").read_text(encoding="utf-8")
+        self.assertIn(f"install_missing {clang['cacheVariables']['CMAKE_CXX_COMPILER'].replace('++', '')};", setup)
 
 
 if __name__ == "__main__":
