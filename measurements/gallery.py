@@ -76,6 +76,7 @@ MATERIALS = {
     "diffuse": 'Material "diffuse" "rgb reflectance" [ 0.2 0.35 0.6 ]',
     "diffusetransmission": 'Material "diffusetransmission" "rgb reflectance" [ 0.3 0.2 0.1 ] "rgb transmittance" [ 0.1 0.3 0.4 ]',
     "measured": f'Material "measured" "string filename" "{MEASURED.name}"',
+    "subsurface": 'Material "subsurface" "rgb reflectance" [ 0.75 0.35 0.12 ] "rgb mfp" [ 0.25 0.08 0.04 ] "float roughness" 0.02',
     "mix": 'MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"\n'
            'MakeNamedMaterial "blue" "string type" "diffuse" "rgb reflectance" [ 0.1 0.2 0.6 ]\n'
            'Texture "stripes" "float" "checkerboard" "float uscale" 12 "float vscale" 0.5 "float tex1" 1 "float tex2" 0\n'

@@ -437,7 +437,10 @@ std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view
   if (parsed && parsed->type == "texture")
     return resolver_.spectrum_texture(string_values(*parsed)[0], parsed->value_where);
   const ParsedParam& value = parsed ? *parsed : default_spectrum(info_, declared, parsed_.where);
-  return std::make_shared<ConstantSpectrumTexture>(resolver_.spectrum(value, SpectrumUse::albedo));
+  // Coefficients have a range without an upper end. The values of textures are at most 1 all the same.
+  const bool is_share = std::isfinite(declared.range.max) || declared.range.min != 0;
+  return std::make_shared<ConstantSpectrumTexture>(
+      resolver_.spectrum(value, is_share ? SpectrumUse::albedo : SpectrumUse::unbounded));
 }
 
 std::filesystem::path Params::file(std::string_view name) const { return resolver_.file(string(name), where(name)); }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/bssrdf.h"
 #include "core/math/sampling.h"
 
 namespace frond {
@@ -45,6 +46,8 @@ const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
 }
 
 const Bsdf& bsdf_at(const Material& material, float lambda_nm, Arena& arena) {
+  if (dynamic_cast<const SubsurfaceMaterial*>(&material))
+    fail({}, "the material scatters light under its surface, which no BSDF describes: render a body of it");
   const Bsdf* bsdf = material.evaluate(flat_hit(), OneWavelength(double(lambda_nm)).sample(0), arena);
   if (!bsdf) fail({}, "the material has no surface there: nothing can be measured");
   return *bsdf;

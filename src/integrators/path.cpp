@@ -58,7 +58,7 @@ constexpr Param kPath[] = {
 };
 
 /// Unidirectional path tracing; light sampling and BSDF sampling combined by the power heuristic.
-class PathIntegrator final : public Integrator, public FluorescenceIntegrator {
+class PathIntegrator final : public Integrator, public FluorescenceIntegrator, public SubsurfaceIntegrator {
  public:
   explicit PathIntegrator(const Params& p)
       : settings_{.max_depth = p.integer("maxdepth"),
@@ -69,13 +69,16 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator {
                   .cutoff = float(p.real("cutoff")),
                   .regularizes = p.boolean("regularize"),
                   .hides_background = p.boolean("hidebackground"),
-                  .rays_by_material = {}},
+                  .rays_by_material = {},
+                  .subsurface = {}},
         adapted_{.light_samples = p.integer("lightsamples") == 0, .scattered_rays = p.integer("scatteredrays") == 0},
         strategy_(light_strategy(p)) {}
 
   void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) override {
     fluorescence_ = std::move(by_material);
   }
+
+  void set_subsurface(SubsurfaceMaterials by_material) override { settings_.subsurface = std::move(by_material); }
 
   void prepare(const World& world) override {
     selector_ = LightSelector(world, strategy_);

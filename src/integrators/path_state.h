@@ -47,6 +47,7 @@ struct Path {
   float eta_scale;       ///< factor by which refraction alone has divided the throughput
   int depth;             ///< scattering events so far
   bool any_nonspecular;  ///< one of them was not specular
+  bool is_exit;          ///< the current vertex is where the path leaves a material with a BSSRDF
   LightSelector::LitPoint previous;  ///< the last vertex
   VertexKey key;                     ///< of the current vertex
 };

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "integrators/path_parts.h"
 #include "integrators/path_state.h"
+#include "integrators/probe.h"
 #include "integrators/vertex_numbers.h"
 
 namespace frond {
@@ -83,6 +84,7 @@ class PathTracer final : public Tracer {
       path.eta_scale = 1;
       path.depth = 0;
       path.any_nonspecular = false;
+      path.is_exit = false;
       path.previous = {path.ray.o, {0, 0, 1}};
       bundle_->results[i].reset();
     }
@@ -109,7 +111,10 @@ class PathTracer final : public Tracer {
   LaneSet intersect(const LaneSet& alive) {
     uint32_t hits = 0;
     for (const size_t i : alive)
-      if (world_.intersect(paths_[i].ray, current_key(i).key(Use::ray), points_[i])) hits |= 1u << i;
+      if (paths_[i].is_exit) [[unlikely]]
+        points_[i] = exits_[size_t(branch_)][i].point, hits |= 1u << i;
+      else if (world_.intersect(paths_[i].ray, current_key(i).key(Use::ray), points_[i]))
+        hits |= 1u << i;
     return end_escaped(alive, hits);
   }
 
@@ -135,6 +140,13 @@ class PathTracer final : public Tracer {
     const SurfacePoint& point = points_[lane];
     Path& path = paths_[lane];
     path.key = current_key(lane);
+    if (path.is_exit) [[unlikely]] {
+      const Bssrdf& bssrdf = settings_.subsurface[point.material_id]->bssrdf(point.hit, path.lambda, arena_);
+      bsdfs_[lane].set(bssrdf.exit(), point.hit, point.hit.shading.z);
+      path.scattered_rays = 1;
+      scattering.add(lane);
+      return;
+    }
     if (point.light) add_emission(lane);
     const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, arena_);
     if (!bsdf) {
@@ -235,6 +247,7 @@ class PathTracer final : public Tracer {
     const auto sample = light->sample_compensated(point.hit.p, on_light, path.lambda);
     if (!sample || sample->radiance.is_black()) return;
     if (!is_valid_sample(*sample)) return bundle_->results[lane].record_fault(*light);
+    if (enters_material(settings_.subsurface, point, -path.ray.d, sample->wi)) return;
     float scatter_pdf = 0;
     const SampledSpectrum f_cos = bsdfs_[lane].f_cos(sample->wi, path.key.stream(Use::light_bsdf, which), scatter_pdf);
     if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY))
@@ -337,9 +350,34 @@ class PathTracer final : public Tracer {
     path.any_nonspecular = path.any_nonspecular || !sample.is_specular;
     path.scatter_pdf =
         !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf * float(path.scattered_rays);
-    set_ray(points_[lane].hit, sample.wi, path);
+    const bool is_exit = path.is_exit;
+    path.is_exit = enters_material(settings_.subsurface, points_[lane], -path.ray.d, sample.wi);
+    if (path.is_exit) [[unlikely]] {
+      if (!pass_material(lane, which, path)) return false;
+    } else {
+      set_ray(points_[lane].hit, sample.wi, path);
+    }
     if (!survives(path)) return false;
-    ++path.depth;
+    path.depth += is_exit ? 0 : 1;  // as in pbrt-v4, entry and exit are one scattering
+    return true;
+  }
+
+  /// Finds the vertex at which a path leaves a material that it has entered. Returns false if the path ends.
+  [[gnu::noinline]] bool pass_material(size_t lane, int which, Path& path) {
+    const SurfacePoint& point = points_[lane];
+    const uint64_t vertex = vertex_index() | uint64_t(kProbeVertex);
+    const PixelSamples& s = bundle_->samples;
+    const PixelSamples one{s.x, s.y, uint64_t(path.scattered_rays) * (s.first + lane) + uint64_t(which), 1};
+    float uc;
+    Vec2 u;
+    get_numbers(bundle_->sampler, one, dimension_of(*bundle_, vertex, Number::lobe), &uc);
+    get_numbers(bundle_->sampler, one, dimension_of(*bundle_, vertex, Number::direction), &u);
+    const Bssrdf& bssrdf = settings_.subsurface[point.material_id]->bssrdf(point.hit, path.lambda, arena_);
+    MaterialExit& exit = exits_[size_t(branch_ + which)][lane];
+    const VertexKey key = vertex_key(bundle_->keys[lane], vertex + (uint64_t(which) << 21));
+    if (!find_exit(world_, bssrdf, point.material_id, uc, u, key, path.ray.time, bundle_->traced, exit)) return false;
+    path.throughput *= exit.weight;
+    path.lambda.retire_black_lanes(path.throughput);
     return true;
   }
 
@@ -390,6 +428,8 @@ class PathTracer final : public Tracer {
   std::array<uint64_t, kSize> shadow_keys_{};
   SplitNumbers<float> numbers_;
   SplitNumbers<Vec2> pairs_;
+  /// Next vertices of paths with Path::is_exit, by branch.
+  std::array<std::array<MaterialExit, kSize>, kMostSplit> exits_;
 };
 
 }  // namespace

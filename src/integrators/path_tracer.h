@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/bssrdf.h"
 #include "core/integrator.h"
 #include "integrators/light_selector.h"
 #include "integrators/vertex_numbers.h"
@@ -22,6 +23,7 @@ struct PathSettings {
   bool hides_background;
   /// scattered_rays by SurfacePoint::material_id; materials beyond the end have scattered_rays.
   std::vector<int> rays_by_material;
+  SubsurfaceMaterials subsurface;
 };
 
 /// Radiance and rays of each light sample and of each scattered ray of the first vertices of a bundle, by path: the

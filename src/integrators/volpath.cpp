@@ -6,6 +6,7 @@
 #include "core/math/sampling.h"
 #include "integrators/path_parts.h"
 #include "integrators/path_state.h"
+#include "integrators/probe.h"
 #include "integrators/shadow_ray.h"
 #include "integrators/vertex_numbers.h"
 
@@ -37,6 +38,7 @@ struct VolPathSettings {
   bool sample_lights;
   bool regularizes;
   bool hides_background;
+  SubsurfaceMaterials subsurface = {};
 };
 
 /// Traces one path after the other. A loop iteration is one ray: its medium, then the surface that it hits.
@@ -192,11 +194,40 @@ class VolPathTracer final : public Tracer {
     }
     if (depth_ >= settings_.max_depth) return false;
     if (settings_.regularizes && is_wide_) bsdf = bsdf->regularized(arena_);
+    Vec3 wi;
+    if (!scatter(point, *bsdf, -ray_.d, wi)) return false;
+    if (!enters_material(settings_.subsurface, point, -ray_.d, wi))
+      leave_surface(point, wi);
+    else if (!pass_material(point))
+      return false;
+    return survives();
+  }
+
+  /// Continues a path that has entered a material where it leaves it. Returns false if the path ends.
+  bool pass_material(const SurfacePoint& point) {
+    key_ = vertex_key(bundle_->keys[lane_], uint64_t(++vertex_));
+    const int vertex = vertex_ | kProbeVertex;
+    const Bssrdf& bssrdf = settings_.subsurface[point.material_id]->bssrdf(point.hit, lambda_, arena_);
+    if (!find_exit(world_, bssrdf, point.material_id, draw_number<float>(*bundle_, lane_, vertex, Number::lobe),
+                   draw_number<Vec2>(*bundle_, lane_, vertex, Number::direction),
+                   vertex_key(bundle_->keys[lane_], uint64_t(vertex)), ray_.time, bundle_->traced, exit_))
+      return false;
+    path_.beta *= exit_.weight;
+    lambda_.retire_black_lanes(path_.beta);
+    Vec3 wi;
+    if (!scatter(exit_.point, bssrdf.exit(), exit_.point.hit.shading.z, wi)) return false;
+    leave_surface(exit_.point, wi);
+    return true;
+  }
+
+  /// Samples a light and the BSDF of a surface, which is seen along `wo`. Returns false if the path ends.
+  bool scatter(const SurfacePoint& point, const Bsdf& bsdf, const Vec3& wo, Vec3& wi) {
     LocalBsdf local;
-    local.set(*bsdf, point.hit, -ray_.d);
+    local.set(bsdf, point.hit, wo);
     const LightSelector::LitPoint place{point.hit.p, point.hit.ng};
     if (settings_.sample_lights && !selector_.empty())
       add_sampled_light(place, [&](const LightSample& sample, ShadowRay& shadow) {
+        if (enters_material(settings_.subsurface, point, wo, sample.wi)) return Scattering{};
         shadow.begin({point.hit.p, offset_origin(point.hit, sample.wi) - point.hit.p},
                      medium_beyond(world_, point, sample.wi, medium_));
         float pdf = 0;
@@ -221,8 +252,8 @@ class VolPathTracer final : public Tracer {
     is_wide_ = is_wide_ || !sample.is_specular;
     is_specular_ = !settings_.sample_lights || sample.is_specular;
     previous_ = place;
-    leave_surface(point, sample.wi);
-    return survives();
+    wi = sample.wi;
+    return true;
   }
 
   /// Continues in the direction `w`.
@@ -315,6 +346,7 @@ class VolPathTracer final : public Tracer {
                ///< origin
   SampledWavelengths lambda_;
   SpectralPath path_;
+  MaterialExit exit_;
   const Medium* medium_ = nullptr;
   bool is_wide_ = false;     ///< a scattering was not specular
   bool is_specular_ = true;  ///< no light sample competes with the next emission
@@ -323,13 +355,14 @@ class VolPathTracer final : public Tracer {
 };
 
 /// Path tracing in participating media.
-class VolPathIntegrator final : public Integrator {
+class VolPathIntegrator final : public Integrator, public SubsurfaceIntegrator {
  public:
   explicit VolPathIntegrator(const Params& p)
       : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.boolean("regularize"),
                   p.boolean("hidebackground")},
         strategy_(light_strategy(p)) {}
 
+  void set_subsurface(SubsurfaceMaterials by_material) override { settings_.subsurface = std::move(by_material); }
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
   std::unique_ptr<Tracer> tracer(const World& world) const override {
     return std::make_unique<VolPathTracer>(world, selector_, settings_);

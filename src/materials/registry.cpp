@@ -19,6 +19,7 @@ extern const MaterialInfo leaf_simplified_material;
 extern const MaterialInfo leaf_solved_material;
 extern const MaterialInfo measured_material;
 extern const MaterialInfo mix_material;
+extern const MaterialInfo subsurface_material;
 extern const MaterialInfo thin_dielectric_material;
 
 namespace {
@@ -27,7 +28,7 @@ constexpr std::array kMaterials{
     &abm_material,          &coated_conductor_material, &coated_diffuse_material,       &conductor_material,
     &dielectric_material,   &diffuse_material,          &diffuse_transmission_material, &interface_material,
     &leaf_lambert_material, &leaf_simplified_material,  &leaf_solved_material,          &measured_material,
-    &mix_material,          &thin_dielectric_material,
+    &mix_material,          &subsurface_material,       &thin_dielectric_material,
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "media/medium_params.h"
 #include "spectra/check_range.h"
+#include "spectra/color/substances.h"
 
 namespace frond {
 namespace {
@@ -22,7 +23,8 @@ Coefficients coefficients_of(const Params& p) {
   if (!p.given("preset")) return Coefficients(p);
   for (const std::string_view name : {"sigma_a", "sigma_s"})
     if (p.given(name)) fail(p.where(name), "\"{}\" and \"preset\" exclude each other", name);
-  return preset_coefficients(p.string("preset"), p.real("scale"), p.where("preset"));
+  const auto [sigma_a, sigma_s] = substance_coefficients(p.string("preset"), p.where("preset"), "preset");
+  return {sigma_a, sigma_s, p.real("scale")};
 }
 
 /// The same everywhere.
@@ -49,7 +51,7 @@ class Homogeneous final : public Medium {
   bool is_emissive() const override { return emission_ && emission_scale_ > 0; }
   void check(const WavelengthStrategy& wavelengths) const override {
     // Presets are RGB, whose spectra are defined over the CIE range only.
-    if (preset_where_) check_range(kPresetRange_nm, wavelengths, *preset_where_, "preset");
+    if (preset_where_) check_range(kSubstanceRange_nm, wavelengths, *preset_where_, "preset");
   }
 
  private:

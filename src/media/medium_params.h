@@ -4,7 +4,6 @@
 
 #include "core/medium.h"
 #include "core/params.h"
-#include "spectra/cie.h"
 
 namespace frond {
 
@@ -98,11 +97,5 @@ MediumBox medium_box(const Params& p, const Transform& world_from_medium);
 /// Size of a grid, "nx", "ny" and "nz". Throws InputError unless the list `name` has as many values, each of `unit`
 /// numbers.
 std::array<int, 3> grid_size(const Params& p, std::string_view name, size_t unit = 1);
-
-/// Wavelengths (nm) of the coefficients of named substances, which are colours.
-inline constexpr Interval kPresetRange_nm = kCieRange_nm;
-
-/// Coefficients of a named substance. Throws InputError for an unknown name.
-Coefficients preset_coefficients(std::string_view name, double scale, const Location& where);
 
 }  // namespace frond

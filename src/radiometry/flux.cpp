@@ -267,6 +267,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   std::vector<uint8_t> is_leaf = leaves_of(description, request, session.registry());
   LoadedScene loaded = session.load(
       std::move(description), {.command = measurement_text(text_of(request), request.target, request.period)}, other);
+  refuse_subsurface(loaded);
   const Scene& scene = loaded.scene();
   if (request.energy && scene.wavelengths().bands()[0].response.empty())
     fail({}, "energy is measured in bands with responses: single wavelengths have none");

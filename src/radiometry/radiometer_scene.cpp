@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/bssrdf.h"
 #include "core/fluorescence.h"
 #include "core/log.h"
 #include "scene/format/plugin_text.h"
@@ -163,6 +164,15 @@ void check_target(const Scene& scene, const Target& target) {
   if (is_beside && !scene.period())
     fail({}, "the target lies beside the scene, which reaches from ({:.10g}, {:.10g}) to ({:.10g}, {:.10g})", b.min.x,
          b.min.y, b.max.x, b.max.y);
+}
+
+void refuse_subsurface(const LoadedScene& loaded) {
+  const auto& materials = loaded.description().materials;
+  for (size_t i = 0; i < materials.size(); ++i)
+    if (dynamic_cast<const SubsurfaceMaterial*>(loaded.scene().material(i)))
+      fail(materials[i].plugin.where,
+           "flux does not follow light under the surface of material \"{}\"; brf and render do",
+           materials[i].plugin.name);
 }
 
 std::vector<uint32_t> reflectors_of(const Scene& scene) {

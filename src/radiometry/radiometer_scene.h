@@ -18,6 +18,9 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description, bool fluorescence = false);
 
+/// Throws InputError at a material with a BSSRDF, whose light paths of flux do not follow.
+void refuse_subsurface(const LoadedScene& loaded);
+
 /// Returns the first light of a scene without a unit, whose energies are in units of the scene; nullptr if there is
 /// none. The light "sky" keeps the unit of its data, W and m; its illuminance has none. Lamps have one if their power
 /// is stated in W or umol/s.

@@ -46,9 +46,7 @@ constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"function", "path", "", {}}};
 /// Integrators that compute another image: their replacement causes a warning.
 constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
-constexpr StandIn kMaterials[] = {{"hair", "diffuse", "materials", {}},
-                                  {"subsurface", "coateddiffuse", "materials", {}},
-                                  {"subsurface", "diffuse", "materials", {}}};
+constexpr StandIn kMaterials[] = {{"hair", "diffuse", "materials", {}}};
 constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
 constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};

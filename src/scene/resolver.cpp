@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/bssrdf.h"
 #include "core/messages/problems.h"
 #include "scene/format/known_names.h"
 #include "scene/scene_options.h"
@@ -173,6 +174,10 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
     if (in_progress_.contains("material " + name)) fail(where, "material \"{}\" refers to itself", name);
     check_depth(in_progress_.size(), where);
     auto made = material(i);
+    if (dynamic_cast<const SubsurfaceMaterial*>(made.get()))
+      fail(where,
+           "\"{}\" is a \"{}\", which no other material can contain: light under its surface needs the whole body",
+           name, description_.materials[i].plugin.name);
     const auto& bend = materials_.at(i).bend;
     return bend ? bent_material(std::move(made), bend) : made;
   }

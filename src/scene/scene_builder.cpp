@@ -2,8 +2,6 @@
 #include <cmath>
 
 #include "core/camera_samples.h"
-#include "core/fluorescence.h"
-#include "core/log.h"
 #include "core/messages/problems.h"
 #include "core/stop.h"
 #include "scene/fluorescence_by_material.h"
@@ -14,6 +12,7 @@
 #include "scene/origin.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
+#include "scene/subsurface_materials.h"
 #include "spectra/check_range.h"
 #include "textures/normal_map.h"
 
@@ -159,6 +158,7 @@ class SceneBuilder {
     check_rays(b);
     build_tiling();
     if (has_fluorescence(*scene_.wavelengths_)) set_fluorescence(preparation);
+    set_subsurface(scene_.material_at_, description_, *scene_.wavelengths_, *scene_.integrator_);
     scene_.integrator_->prepare(scene_);
     if (const std::string adapted = scene_.integrator_->adapt(scene_, scene_.camera_sampling()); !adapted.empty())
       log_.info(adapted);

@@ -39,12 +39,14 @@ enum class Method : uint8_t {
   cloud,
   nanovdb,
   measured,
+  path_subsurface,
+  volpath_subsurface,
 };
 struct MethodName {
   std::string_view name, doc;
 };
 const MethodName& describe(Method method);
-inline constexpr size_t kMethods = 28;
+inline constexpr size_t kMethods = 30;
 
 /// Result of one method in one case.
 struct Cell {

@@ -1,6 +1,7 @@
+#include "spectra/color/substances.h"
+
 #include <array>
 
-#include "media/medium_params.h"
 #include "spectra/color/rgb_upsampling.h"
 
 namespace frond {
@@ -67,16 +68,16 @@ constexpr Substance kSubstances[] = {
 }  // namespace
 
 /// The colours are linear sRGB; their spectra may exceed 1, as coefficients are not bounded.
-Coefficients preset_coefficients(std::string_view name, double scale, const Location& where) {
+SubstanceCoefficients substance_coefficients(std::string_view name, const Location& where, std::string_view what) {
   std::vector<std::string_view> names;
   for (const Substance& s : kSubstances) {
     if (s.name == name) {
       const ColorSpace& srgb = *find_color_space("srgb");
-      return {rgb_unbounded(srgb, s.sigma_a, where), rgb_unbounded(srgb, s.sigma_s, where), scale};
+      return {rgb_unbounded(srgb, s.sigma_a, where), rgb_unbounded(srgb, s.sigma_s, where)};
     }
     names.push_back(s.name);
   }
-  fail(where, "unknown preset \"{}\"{}", name, suggestion(name, names));
+  fail(where, "unknown {} \"{}\"{}", what, name, suggestion(name, names));
 }
 
 }  // namespace frond
