@@ -40,8 +40,8 @@ class SceneReader {
 
  private:
   static constexpr size_t kDeepest = 64;
-  static constexpr size_t kMostFiles = 20'000;           ///< read in all, each as often as it is included
   static constexpr size_t kMostBytes = size_t{1} << 30;  ///< read again, from files that are included several times
+  static constexpr size_t kLeastBytes = 1 << 15;         ///< that a file which is read again counts as
 
   Location read(const std::string& bytes, const fs::path& path, Tokenizer* outer);
   void read_directive(Tokenizer& tokens, DirectiveContext& context);
@@ -60,7 +60,7 @@ class SceneReader {
   };
   std::vector<OpenFile> open_files_;  // from the main file to the one being read
   std::set<fs::path> seen_;           // real paths
-  size_t files_ = 0, repeated_bytes_ = 0;
+  size_t repeated_bytes_ = 0;
   bool limit_reached_ = false;  // nothing further is read
   Location end_;
 };
@@ -72,14 +72,14 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
   const auto name = std::make_shared<const std::string>(path.string());
   std::string unpacked;
   if (is_gzip(bytes)) unpacked = unpack_gzip(bytes, path.string(), {name, 1, 1});
-  if (!seen_.insert(real_path(path)).second) repeated_bytes_ += is_gzip(bytes) ? unpacked.size() : bytes.size();
-  if (++files_ > kMostFiles || repeated_bytes_ > kMostBytes) {
+  if (!seen_.insert(real_path(path)).second)
+    repeated_bytes_ += std::max(is_gzip(bytes) ? unpacked.size() : bytes.size(), kLeastBytes);
+  if (repeated_bytes_ > kMostBytes) {
     limit_reached_ = scene_.is_incomplete = true;
     fail({name, 1, 1},
-         "the scene includes more than {} files, each counted as often as it is included, or files again with more "
-         "than {} "
-         "GB in all",
-         kMostFiles, kMostBytes >> 30);
+         "the scene includes files again with more than {} GB in all, each counted as {} kB or more; an object with "
+         "instances is read once",
+         kMostBytes >> 30, kLeastBytes >> 10);
   }
   Tokenizer tokens(is_gzip(bytes) ? unpacked : bytes, name, outer);
   if (!open_files_.empty() && !tokens.at_end()) check_begins_scene(tokens.peek(), tokens.where(tokens.peek()));
