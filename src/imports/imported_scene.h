@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -46,11 +47,16 @@ struct ImportedMaterial {
   float transmission = 0;
   std::array<float, 3> transmitted{1, 1, 1};
   ImportedTexture transmission_texture = {}, transmitted_texture = {};
-  float ior = 0;        ///< index of refraction of a clear surface; 0: it is opaque
-  float thickness = 0;  ///< of a clear surface; above 0: it encloses a volume, otherwise it is a thin pane
+  float ior = 0;                    ///< index of refraction of a clear surface; 0: it is opaque
+  float thickness = 0;              ///< of a clear surface; above 0: it encloses a volume, otherwise it is a thin pane
+  std::array<float, 3> emission{};  ///< luminance of each channel of linear sRGB, cd/m^2; a factor of the texture
+  ImportedTexture emission_texture = {};
+  bool has_two_sides = true;  ///< that emit
 
-  std::array<const ImportedTexture*, 5> textures() const {
-    return {&color_texture, &opacity_texture, &normal_texture, &transmitted_texture, &transmission_texture};
+  bool is_emitter() const { return emission != std::array<float, 3>{}; }
+  std::array<const ImportedTexture*, 6> textures() const {
+    return {&color_texture,       &opacity_texture,      &normal_texture,
+            &transmitted_texture, &transmission_texture, &emission_texture};
   }
   /// The texture whose coordinates meshes have; they are already mapped by its `to_image`.
   const ImportedTexture& uv_texture() const {
@@ -80,14 +86,42 @@ struct ImportedNode {
   bool operator==(const ImportedNode&) const = default;
 };
 
+/// Light without a surface.
+struct ImportedLight {
+  enum class Type : uint8_t { point, spot, distant } type = Type::point;
+  std::array<double, 3> color{};      ///< of linear sRGB: intensity in cd; of a distant light illuminance in lx
+  double inner = 0, outer = 0;        ///< of a spot: angles from its axis of full and of no intensity, radians
+  std::array<double, 12> to_world{};  ///< as of nodes; the light is at the origin and shines along -z
+  bool operator==(const ImportedLight&) const = default;
+};
+
+struct ImportedCamera {
+  bool is_orthographic = false;
+  std::array<double, 2> half{};       ///< half the image along x and y: at the distance 1, or anywhere if orthographic
+  std::array<double, 12> to_world{};  ///< as of nodes; the camera is at the origin, looks along -z, and y is up
+  bool operator==(const ImportedCamera&) const = default;
+};
+
 struct ImportedScene {
   std::vector<ImportedImage> images;
   std::vector<ImportedMaterial> materials;
   std::vector<ImportedMesh> meshes;
   std::vector<ImportedNode> nodes;
+  std::vector<ImportedLight> lights;
+  std::vector<ImportedCamera> cameras;
   std::array<double, 3> origin{};  ///< point of the model that all positions are relative to: OBJ in map coordinates
   std::vector<ImportedLoss> losses;
   std::vector<std::string> warnings;
+
+  /// Returns the index of a material, which is added if there is none like it.
+  uint32_t add(ImportedMaterial material) {
+    const auto found = std::ranges::find(materials, material);
+    if (found == materials.end()) {
+      materials.push_back(std::move(material));
+      return uint32_t(materials.size() - 1);
+    }
+    return uint32_t(found - materials.begin());
+  }
   bool operator==(const ImportedScene&) const = default;
 };
 

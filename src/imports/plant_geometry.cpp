@@ -127,8 +127,15 @@ PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world
   }
   using Key = std::tuple<uint32_t, bool, bool>;  // material, with normals, with texture coordinates
   std::map<Key, PlantMesh> joined;
+  constexpr size_t kMostEmitting = 1'000'000;  // triangles of instances that emit; objects cannot emit
   for (const auto& [meshes, nodes] : uses) {
-    if (nodes.size() > 1 || keeps_objects) {
+    size_t triangles = 0;
+    bool is_emitter = false;
+    for (const uint32_t m : meshes) {
+      triangles += scene.meshes[m].triangles.size();
+      is_emitter = is_emitter || scene.materials[scene.meshes[m].material].is_emitter();
+    }
+    if ((nodes.size() > 1 || keeps_objects) && !(is_emitter && triangles <= kMostEmitting / nodes.size())) {
       const std::string &of_mesh = scene.meshes[meshes.front()].name, &of_node = scene.nodes[nodes.front()].name;
       geometry.objects.push_back(object_of(scene, meshes, nodes.size() > 1 || of_node.empty() ? of_mesh : of_node));
       for (const size_t i : nodes) geometry.objects.back().instances.push_back(maps[i]);
@@ -139,7 +146,7 @@ PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world
       PlantMesh& to = joined[{mesh.material, has_normals(mesh), !mesh.uvs.empty()}];
       to.name = scene.materials[mesh.material].name;
       to.material = mesh.material;
-      append(to, mesh, maps[nodes.front()]);
+      for (const size_t i : nodes) append(to, mesh, maps[i]);
       if (!has_normals(mesh)) to.n.clear();
     }
   }

@@ -47,6 +47,7 @@ class MaterialWriter {
   void write(const ImportedMaterial& m, PlantMaterials& out) {
     const std::string& name = out.names.emplace_back(unique(quotable(m.name)));
     out.alpha.push_back(alpha_parameter(m, name));
+    out.emission.push_back(emission(m, name));
     text_.clear();
     const auto rule =
         std::ranges::find_if(rules_, [&m](const MaterialRule& r) { return matches_pattern(r.pattern, m.name); });
@@ -162,16 +163,40 @@ class MaterialWriter {
     return "diffusetransmission";
   }
 
+  /// Returns the directive of an emission. An area light has an image or a colour.
+  std::string emission(const ImportedMaterial& m, const std::string& name) {
+    if (!m.is_emitter()) return {};
+    const std::string sides = m.has_two_sides ? " \"bool twosided\" true" : "";
+    const auto [r, g, b] = m.emission;
+    if (m.emission_texture.image < 0)
+      return fmt::format("  AreaLightSource \"diffuse\" \"rgb L\" [ {} {} {} ]{}\n", r, g, b, sides);
+    if (!images_.pixels(m.emission_texture.image)) return {};
+    if (!m.emission_texture.shares_uv(m.uv_texture())) {
+      losses_.add_for_material(m.name, "emission by an image with texture coordinates of its own");
+      return {};
+    }
+    const auto [path, scale] = factored(m.emission_texture.image, m.emission, name + "-emission");
+    return fmt::format("  AreaLightSource \"diffuse\" \"string filename\" \"{}\" \"float scale\" {}{}\n", path, scale,
+                       sides);
+  }
+
+  /// Returns the path of an image times a colour, and a factor that its values need: the largest of the colour.
+  std::pair<std::string, float> factored(int32_t image, const std::array<float, 3>& color, const std::string& name) {
+    const auto [r, g, b] = color;
+    const float most = std::max({r, g, b});
+    const bool is_grey = most - std::min({r, g, b}) <= 1e-3f * most;
+    return {is_grey ? images_.original(image) : images_.tinted_image(image, {r / most, g / most, b / most}, name),
+            most};
+  }
+
   /// Returns the parameter of a colour, or of the texture of an image that it is a factor of.
   std::string color(const ImportedMaterial& m, const char* parameter, const std::array<float, 3>& factor,
                     const ImportedTexture& texture, const std::string& name) {
     const auto [r, g, b] = factor;
     const auto mapping = mapping_of(m, texture, "image of the colour");
     if (!images_.pixels(texture.image) || !mapping) return fmt::format("\"rgb {}\" [ {} {} {} ]", parameter, r, g, b);
-    const bool is_grey = std::max({r, g, b}) - std::min({r, g, b}) < 1e-3f;
-    const std::string path =
-        is_grey ? images_.original(texture.image) : images_.tinted_image(texture.image, factor, name);
-    add_texture(name, "spectrum", path, texture, is_grey && r < 0.999f ? r : 1, *mapping);
+    const auto [path, scale] = factored(texture.image, factor, name);
+    add_texture(name, "spectrum", path, texture, scale < 0.999f ? scale : 1, *mapping);
     return fmt::format("\"texture {}\" \"{}\"", parameter, name);
   }
 
@@ -291,6 +316,7 @@ PlantMaterials plant_materials(const ImportedScene& scene, const std::vector<boo
       out.types.emplace_back();
       out.rules.emplace_back();
       out.alpha.emplace_back();
+      out.emission.emplace_back();
     }
   }
   writer.check_rules(scene, used);

@@ -28,6 +28,7 @@ struct PlantMaterials {
   std::vector<std::string> names;  ///< by index: names in the scene file; of the model, for materials without triangles
   std::vector<std::string> types;  ///< by index: plug-ins
   std::vector<std::string> alpha;  ///< by index: parameter of shapes for the opacity, or ""
+  std::vector<std::string> emission;       ///< by index: AreaLightSource directive of shapes, or ""
   std::vector<const MaterialRule*> rules;  ///< by index: that has made the material, or nullptr
   LossList losses;
 };

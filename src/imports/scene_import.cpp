@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/messages/counted.h"
 #include "imports/model_reader.h"
+#include "imports/scene_view.h"
 #include "scene/geometry/instance_writer.h"
 #include "shapes/ply_writer.h"
 #include "system/new_files.h"
@@ -37,6 +38,11 @@ std::string comment_name(const fs::path& model) {
   return name;
 }
 
+/// Whether a material by --leaf replaces the surface of a material of the model.
+bool is_replaced(const std::string& name, const std::vector<MaterialRule>& rules) {
+  return std::ranges::any_of(rules, [&name](const MaterialRule& rule) { return matches_pattern(rule.pattern, name); });
+}
+
 /// Writes the directives and files of a model.
 class SceneWriter {
  public:
@@ -49,12 +55,12 @@ class SceneWriter {
         "#   Include \"{}-plant.pbrt\"\n\n{}\n",
         FROND_VERSION, comment_name(options_.model), stem_, materials_.text);
     begin_at(geometry.origin);
-    for (const PlantMesh& mesh : geometry.meshes) shape(mesh);
+    for (const PlantMesh& mesh : geometry.meshes) shape(mesh, materials_.emission[mesh.material]);
     end_at(geometry.origin);
     for (const PlantObject& object : geometry.objects) {
       const std::string name = unique(plain_name(object.name), objects_);
       text_ += fmt::format("\nObjectBegin \"{}\"\n", name);
-      for (const PlantMesh& mesh : object.meshes) shape(mesh);
+      for (const PlantMesh& mesh : object.meshes) shape(mesh, "");
       text_ += "ObjectEnd\n";
       begin_at(geometry.origin);
       object.instances.size() > kMostDirectives ? table(object, name) : directives(object, name);
@@ -82,15 +88,15 @@ class SceneWriter {
     if (origin != Vec3d{}) text_ += "AttributeEnd\n";
   }
 
-  void shape(const PlantMesh& mesh) {
+  void shape(const PlantMesh& mesh, const std::string& emission) {
     constexpr size_t kMostVertices = 2'147'483'647;  // an index of a PLY file is an int
     if (mesh.p.size() > kMostVertices) fail({}, "\"{}\" has {} vertices, more than 2^31", mesh.name, mesh.p.size());
     const std::string file = stem_ + "-files/" + unique(plain_name(mesh.name), files_) + ".ply";
     folder_.write(file, ply_file(mesh));
     text_ += fmt::format(
-        "AttributeBegin\n  NamedMaterial \"{}\"\n  Shape \"plymesh\" \"string filename\" \"{}\"{}\n"
+        "AttributeBegin\n  NamedMaterial \"{}\"\n{}  Shape \"plymesh\" \"string filename\" \"{}\"{}\n"
         "AttributeEnd\n",
-        materials_.names[mesh.material], file, materials_.alpha[mesh.material]);
+        materials_.names[mesh.material], emission, file, materials_.alpha[mesh.material]);
   }
 
   /// pbrt's matrices are stored by columns.
@@ -122,46 +128,30 @@ class SceneWriter {
   std::set<std::string> files_, objects_;
 };
 
-/// Returns the nearest point from which a camera with this field of view (tangent of its half) sees the whole bounding
-/// box, with a margin. `toward` is the direction to the camera.
-Vec3d viewpoint(const PlantGeometry& geometry, const Vec3d& toward, double tangent) {
-  constexpr double kMargin = 1.05;
-  const Vec3d center = (geometry.least + geometry.most) / 2.0, half = (geometry.most - geometry.least) / 2.0;
-  const Vec3d right = normalize(cross(Vec3d{0, 0, 1}, toward)), up = cross(toward, right);
-  double distance = 1e-6;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d p{corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z};
-    const double off_axis = std::max(std::abs(dot(p, right)), std::abs(dot(p, up)));
-    distance = std::max(distance, off_axis * kMargin / tangent + dot(p, toward));
+/// Removes the emission of materials that --leaf replaces, and names it; names images of emissions that are repeated,
+/// which area lights do not do.
+void settle_emission(ImportedScene& scene, const std::vector<MaterialRule>& rules) {
+  LossList losses;
+  for (ImportedMaterial& m : scene.materials)
+    if (m.is_emitter() && is_replaced(m.name, rules)) {
+      losses.add_for_material(m.name, "emission");
+      m.emission = {};
+      m.emission_texture = {};
+    }
+  std::set<uint32_t> repeated;
+  for (const ImportedMesh& mesh : scene.meshes) {
+    const ImportedTexture& image = scene.materials[mesh.material].emission_texture;
+    constexpr float kEdge = 1e-3f;
+    const auto is_outside = [](const auto& uv) {
+      return std::min(uv[0], uv[1]) < -kEdge || std::max(uv[0], uv[1]) > 1 + kEdge;
+    };
+    if (image.image >= 0 && image.wrap != ImportedTexture::Wrap::clamp && std::ranges::any_of(mesh.uvs, is_outside))
+      repeated.insert(mesh.material);
   }
-  return center + toward * distance;
-}
-
-/// Returns a coordinate with the digits of a 32-bit float, or to a tenth of a millimetre if that is more.
-std::string digits(double x) { return is_far({x, 0, 0}) ? fmt::format("{:.4f}", x) : fmt::format("{:.9g}", x); }
-
-/// Camera that sees all of the model, from the front (-y) and above; a sky of even radiance 0.4 and a sun, in which a
-/// horizontal white surface has the value 1.
-std::string view(const PlantGeometry& geometry, const ImportOptions& options, const std::string& stem) {
-  constexpr double kTangent = 0.2679491924;  // of half the field of view, 15 degrees
-  const Vec3d center = (geometry.least + geometry.most) / 2.0, size = geometry.most - geometry.least;
-  const Vec3d eye = viewpoint(geometry, normalize(Vec3d{0.35, -1, 0.35}), kTangent) + geometry.origin;
-  const Vec3d at = center + geometry.origin;
-  return fmt::format(
-      "# Written by frond {}: frond import {}. z is up; the model is {:.6g} x {:.6g} x {:.6g} units.\n\n"
-      "Scale -1 1 1  # right-handed space\n"
-      "LookAt {} {} {}   {} {} {}   0 0 1\n"
-      "Camera \"perspective\" \"float fov\" 30\n"
-      "Film \"rgb\" \"integer xresolution\" 800 \"integer yresolution\" 800 \"string filename\" \"{}.png\"\n"
-      "Sampler \"lattice\" \"integer pixelsamples\" 64\n"
-      "Integrator \"path\" \"integer maxdepth\" 64\n\n"
-      "WorldBegin\n\n"
-      "# Sun and sky: a horizontal white surface has the value 1. Without \"illuminance\" they are in physical units.\n"
-      "LightSource \"sky\" \"float elevation\" 50 \"float azimuth\" 230 \"float albedo\" 0.2 \"float illuminance\" "
-      "3.14159\n\n"
-      "Include \"{}-plant.pbrt\"\n",
-      FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, digits(eye.x), digits(eye.y), digits(eye.z),
-      digits(at.x), digits(at.y), digits(at.z), stem, stem);
+  for (const uint32_t m : repeated)
+    losses.add_for_material(scene.materials[m].name, "repetition of the image of the emission");
+  for (const ImportedLoss& loss : losses.all()) scene.losses.push_back(loss);
+  if (scene.cameras.size() > 1) scene.losses.push_back({"further camera", scene.cameras.size() - 1});
 }
 
 /// Which materials have triangles.
@@ -241,18 +231,15 @@ std::string stem_of(const fs::path& scene) {
   return is_quotable ? stem : plain_name(stem);
 }
 
-/// Writes the text of the losses into the summary. A material by --leaf replaces the surface of the model's.
-void add_losses(const ImportedScene& scene, const PlantMaterials& materials, const std::vector<MaterialRule>& rules,
-                ImportSummary& summary) {
-  const auto is_replaced = [&rules](const std::string& name) {
-    return std::ranges::any_of(rules,
-                               [&name](const MaterialRule& rule) { return matches_pattern(rule.pattern, name); });
-  };
+/// Writes the text of the losses into the summary.
+void add_losses(const ImportedScene& scene, const PlantGeometry& geometry, const PlantMaterials& materials,
+                const std::vector<MaterialRule>& rules, ImportSummary& summary) {
+  const auto by_rule = [&rules](const std::string& name) { return is_replaced(name, rules); };
   const auto add = [&](const ImportedLoss& loss) {
     if (!loss.is_surface || loss.materials.empty()) return summary.left_out.push_back(text_of(loss));
     ImportedLoss kept = loss, replaced = loss;
-    std::erase_if(kept.materials, is_replaced);
-    std::erase_if(replaced.materials, [&](const std::string& name) { return !is_replaced(name); });
+    std::erase_if(kept.materials, by_rule);
+    std::erase_if(replaced.materials, std::not_fn(by_rule));
     if (!kept.materials.empty()) summary.left_out.push_back(text_of(kept));
     if (!replaced.materials.empty()) summary.replaced.push_back(text_of(replaced));
   };
@@ -262,6 +249,12 @@ void add_losses(const ImportedScene& scene, const PlantMaterials& materials, con
   for (const ImportedMesh& mesh : scene.meshes)
     if (!mesh.normals.empty() && !has_normals(mesh)) normals.add("normals of a mesh, of which some are 0 or not given");
   for (const ImportedLoss& loss : normals.all()) add(loss);
+  LossList instances;
+  for (const PlantObject& object : geometry.objects)
+    for (const PlantMesh& mesh : object.meshes)
+      if (const ImportedMaterial& m = scene.materials[mesh.material]; m.is_emitter())
+        instances.add_for_material(m.name, "emission of many instances");
+  for (const ImportedLoss& loss : instances.all()) add(loss);
   for (size_t i = 0; i < materials.rules.size(); ++i)
     if (materials.rules[i] && materials.rules[i]->mapped.empty() && scene.materials[i].color_texture.image >= 0)
       colors.add_for_material(scene.materials[i].name, fmt::format("colour image {}", summary.images[i][0]));
@@ -288,13 +281,15 @@ ImportSummary summary_of(const ImportOptions& options, const ImportedScene& scen
                         .types = materials.types,
                         .instances = geometry.instance_count(),
                         .objects = geometry.objects.size(),
+                        .lights = scene.lights.size(),
+                        .has_camera = !scene.cameras.empty(),
                         .double_sheets = sheets,
                         .size = {size.x, size.y, size.z}};
   const Vec3d least = geometry.least + geometry.origin;
   summary.least = {least.x, least.y, least.z};
   for (size_t i = 0; i < scene.materials.size(); ++i)
     summary.images.push_back(images_of(scene, scene.materials[i], materials.alpha[i]));
-  add_losses(scene, materials, options.rules, summary);
+  add_losses(scene, geometry, materials, options.rules, summary);
   const auto count = [&summary](const std::vector<PlantMesh>& meshes) {
     for (const PlantMesh& mesh : meshes) summary.triangles[mesh.material] += mesh.triangles.size();
   };
@@ -314,7 +309,8 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
                            const std::function<void(const ImportSummary&)>& accept) {
   if (!options.scene.empty() && options.scene.extension() != ".pbrt")
     fail({}, "the scene \"{}\" needs the extension .pbrt", options.scene.string());
-  const ImportedScene scene = read_model(options.model);
+  ImportedScene scene = read_model(options.model);
+  settle_emission(scene, options.rules);
   for (const std::string& warning : scene.warnings) log.warn({}, warning);
   PlantGeometry geometry = plant_geometry(scene, to_scene(options), options.keeps_objects);
   warn_of_steps(geometry, log);
@@ -334,7 +330,12 @@ ImportSummary import_scene(const ImportOptions& options, const Log& log,
   NewFiles folder(options.scene.parent_path(), inputs);
   for (const PlantFile& file : images.files()) folder.write(file.path, file.bytes);
   folder.write(stem + "-plant.pbrt", SceneWriter(options, materials, stem, folder).plant(geometry));
-  folder.write(options.scene.filename().string(), view(geometry, options, stem));
+  const std::string head =
+      fmt::format("# Written by frond {}: frond import {}. z is up; the model is {:.6g} x {:.6g} x {:.6g} units.\n\n",
+                  FROND_VERSION, comment_name(options.model), summary.size[0], summary.size[1], summary.size[2]);
+  folder.write(options.scene.filename().string(),
+               head + scene_view(scene, geometry, to_scene(options), options.scale, stem) +
+                   fmt::format("Include \"{}-plant.pbrt\"\n", stem));
   folder.finish();
   return summary;
 }

@@ -32,7 +32,8 @@ struct ImportSummary {
   std::vector<std::string> materials;  ///< names in the scene file
   std::vector<size_t> triangles;       ///< by material; triangles of an object count once
   std::vector<std::string> types;      ///< by material: "leaf (by --leaf)", "diffuse"
-  size_t instances = 0, objects = 0;
+  size_t instances = 0, objects = 0, lights = 0;
+  bool has_camera = false;                 ///< of the model
   std::vector<DoubleSheet> double_sheets;  ///< material: index in `materials`
   std::vector<std::string> left_out = {};
   std::vector<std::string> replaced = {};  ///< properties without effect, because --leaf replaces the surface

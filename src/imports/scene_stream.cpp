@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kMagic = "frond import 3\n";
+constexpr std::string_view kMagic = "frond import 4\n";
 
 template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || requires {
@@ -51,7 +51,11 @@ class Reader {
 
   template <class T>
   void operator()(T& value) {
-    if constexpr (Plain<T>) {
+    if constexpr (std::is_same_v<T, bool>) {
+      uint8_t byte = 0;  // any value may have been written
+      raw(&byte, 1);
+      value = byte != 0;
+    } else if constexpr (Plain<T>) {
       raw(&value, sizeof value);
     } else if constexpr (Sequence<T>) {
       uint64_t count = 0;
@@ -91,16 +95,20 @@ void visit(T& v, Io& io) {
   } else if constexpr (std::is_same_v<Type, ImportedMaterial>) {
     each(v.name, v.color, v.opacity, v.alpha, v.cutoff, v.color_texture, v.opacity_texture, v.normal_texture,
          v.normal_scale, v.metalness, v.roughness, v.transmission, v.transmitted, v.transmission_texture,
-         v.transmitted_texture, v.ior, v.thickness);
+         v.transmitted_texture, v.ior, v.thickness, v.emission, v.emission_texture, v.has_two_sides);
   } else if constexpr (std::is_same_v<Type, ImportedLoss>) {
     each(v.what, v.count, v.materials, v.is_surface);
   } else if constexpr (std::is_same_v<Type, ImportedMesh>) {
     each(v.name, v.material, v.positions, v.normals, v.uvs, v.triangles);
   } else if constexpr (std::is_same_v<Type, ImportedNode>) {
     each(v.name, v.parent, v.to_parent, v.meshes);
+  } else if constexpr (std::is_same_v<Type, ImportedLight>) {
+    each(v.type, v.color, v.inner, v.outer, v.to_world);
+  } else if constexpr (std::is_same_v<Type, ImportedCamera>) {
+    each(v.is_orthographic, v.half, v.to_world);
   } else {
     static_assert(std::is_same_v<Type, ImportedScene>);
-    each(v.images, v.materials, v.meshes, v.nodes, v.origin, v.losses, v.warnings);
+    each(v.images, v.materials, v.meshes, v.nodes, v.lights, v.cameras, v.origin, v.losses, v.warnings);
   }
 }
 
@@ -124,6 +132,7 @@ void check_material(const ImportedMaterial& m, size_t images) {
   check_finite(m.color, kProblem);
   check_finite(m.transmitted, kProblem);
   check_finite(m.normal_scale, kProblem);
+  check_finite(m.emission, kProblem);
   check_finite(std::array{m.opacity, m.cutoff, m.metalness, m.roughness, m.transmission, m.ior, m.thickness}, kProblem);
 }
 
@@ -154,6 +163,16 @@ ImportedScene decode(std::string_view bytes) {
   for (const double x : scene.origin) check(std::isfinite(x), "its origin is not finite");
   for (const auto& m : scene.materials) check_material(m, scene.images.size());
   for (const auto& m : scene.meshes) check_mesh(m, scene.materials.size());
+  for (const ImportedLight& light : scene.lights) {
+    check(light.type <= ImportedLight::Type::distant, "a light has an unknown type");
+    for (const double v : light.color) check(v >= 0 && std::isfinite(v), "a light has a colour that is not finite");
+    check(light.inner >= 0 && light.inner <= light.outer && light.outer <= 4, "a light has a cone without size");
+    check_finite(light.to_world, "a light has a transform that is not finite");
+  }
+  for (const ImportedCamera& camera : scene.cameras) {
+    for (const double v : camera.half) check(v > 0 && std::isfinite(v), "a camera has an image without size");
+    check_finite(camera.to_world, "a camera has a transform that is not finite");
+  }
   for (size_t i = 0; i < scene.nodes.size(); ++i) {
     const ImportedNode& node = scene.nodes[i];
     check(node.parent >= -1 && node.parent < int64_t(i), "a node precedes its parent");

@@ -229,6 +229,8 @@ Result import_model(const JobRun& run) {
   if (summary.objects > 0)
     result.text +=
         fmt::format("{} of {}\n", counted(summary.instances, "instance"), counted(summary.objects, "object"));
+  if (summary.has_camera) result.text += "the model's camera\n";
+  if (summary.lights > 0) result.text += fmt::format("{} in place of sun and sky\n", counted(summary.lights, "light"));
   if (is_list) {
     const auto& [least, size] = std::pair(summary.least, summary.size);
     for (size_t k = 0; k < 3; ++k)
@@ -242,7 +244,8 @@ Result import_model(const JobRun& run) {
   result.facts = {{"width", summary.size[0]},
                   {"depth", summary.size[1]},
                   {"height", summary.size[2]},
-                  {"instances", double(summary.instances)}};
+                  {"instances", double(summary.instances)},
+                  {"lights", double(summary.lights)}};
   return result;
 }
 

@@ -64,8 +64,7 @@ void GltfLosses::check_extensions(std::string_view kind, const Json& all, const 
       check(name, extension, material);
     } else {
       named_.insert(name);
-      add(name == "KHR_lights_punctual" ? "light (KHR_lights_punctual)" : "extension " + name, material,
-          kind == "material");
+      add("extension " + name, material, kind == "material");
     }
   }
 }

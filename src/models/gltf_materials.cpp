@@ -53,8 +53,11 @@ ImportedMaterial GltfMaterials::read(const Json& material) {
             : mode == "BLEND" ? ImportedMaterial::Alpha::blend
                               : ImportedMaterial::Alpha::opaque;
   m.cutoff = float(number(material, "alphaCutoff", 0.5));
+  const Json* sides = member(material, "doubleSided");
+  m.has_two_sides = sides && *sides == true;
   read_base(material, m);
   read_transmission(material, m);
+  read_emission(material, m);
   m.normal_texture = texture(material, "normalTexture");
   if (m.normal_texture.image >= 0) {
     m.normal_scale.fill(float(number(*member(material, "normalTexture"), "scale", 1)));
@@ -64,6 +67,7 @@ ImportedMaterial GltfMaterials::read(const Json& material) {
   return m;
 }
 
+/// Unlit surfaces are lit, as diffuse ones: their colour is that of a photograph in most models of plants.
 /// A map of metalness and roughness multiplies the factors, so that these alone say nothing: the surface is taken as no
 /// metal then. Both factors are 1 where a file does not state them, which is no statement about metal either.
 void GltfMaterials::read_base(const Json& material, ImportedMaterial& m) {
@@ -76,14 +80,18 @@ void GltfMaterials::read_base(const Json& material, ImportedMaterial& m) {
   m.opacity = std::clamp(float(color[3]), 0.f, 1.f);
   m.color_texture = texture(base, glossy ? "diffuseTexture" : "baseColorTexture");
   if (glossy) return losses_.add("gloss", &name_);
+  if (extension(material, "KHR_materials_unlit"))
+    return losses_.add("shading without light (KHR_materials_unlit)", &name_);
   losses_.check("pbrMetallicRoughness", base, &name_);
   if (!rough || member(base, "metallicRoughnessTexture")) return;
   const float metalness = fraction(base, "metallicFactor", 1);
   m.roughness = fraction(base, "roughnessFactor", 1);
   m.metalness = metalness == 1 && m.roughness == 1 ? 0 : metalness;
   const Json* clear = extension(material, "KHR_materials_transmission");
+  const Json* specular = extension(material, "KHR_materials_specular");
   const bool is_clear = clear && fraction(*clear, "transmissionFactor", 0) >= 0.5f;
-  if (metalness < 0.5f && m.roughness < 1 && !is_clear) losses_.add("gloss", &name_);
+  const bool is_matt = m.roughness == 1 || (specular && fraction(*specular, "specularFactor", 1) == 0);
+  if (metalness < 0.5f && !is_matt && !is_clear) losses_.add("gloss", &name_);
   if (metalness > 0 && metalness < 1) losses_.add("metalness between 0 and 1 (metallicFactor)", &name_);
   if (metalness == 1 && m.roughness == 1 && member(base, "metallicFactor"))
     losses_.add("metalness of a roughness of 1 (metallicFactor)", &name_);
@@ -112,6 +120,15 @@ void GltfMaterials::read_transmission(const Json& material, ImportedMaterial& m)
   if (m.color != std::array<float, 3>{1, 1, 1} || m.color_texture.image >= 0)
     losses_.add("colour of a clear surface", &name_);
   if (m.thickness == 0 && m.roughness > 0) losses_.add("roughness of a thin clear surface", &name_);
+}
+
+/// The factor is black by default, which no texture makes brighter.
+void GltfMaterials::read_emission(const Json& material, ImportedMaterial& m) {
+  const Json* strength = extension(material, "KHR_materials_emissive_strength");
+  const double scale = strength ? number(*strength, "emissiveStrength", 1) : 1;
+  const auto factor = numbers(material, "emissiveFactor", {0, 0, 0});
+  for (size_t i = 0; i < 3; ++i) m.emission[i] = std::max(float(factor[i] * scale), 0.f);
+  if (m.is_emitter()) m.emission_texture = texture(material, "emissiveTexture");
 }
 
 /// A texture has one wrap mode for both directions in the scene: that along u.

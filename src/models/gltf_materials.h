@@ -26,6 +26,7 @@ class GltfMaterials {
   /// Reads base colour, metalness and roughness, or the colour of specular and glossiness.
   void read_base(const nlohmann::json& material, ImportedMaterial& m);
   void read_transmission(const nlohmann::json& material, ImportedMaterial& m);
+  void read_emission(const nlohmann::json& material, ImportedMaterial& m);
   /// Returns the texture under a key; one without an image if there is none.
   ImportedTexture texture(const nlohmann::json& object, std::string_view key);
   /// Returns the index in the scene of a texture's image; -1 with a loss if it has none.

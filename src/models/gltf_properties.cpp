@@ -10,22 +10,31 @@ using enum GltfUse;
 constexpr GltfProperty kProperties[] = {
     {"glTF",
      "asset scene scenes nodes meshes materials textures images samplers accessors bufferViews buffers extensionsUsed "
-     "extensionsRequired skins",
+     "extensionsRequired skins cameras",
      read},
-    // cameras: those that nodes have are named
-    {"glTF", "cameras", inert},
     {"glTF", "animations", lost, "animation", "[]"},
     {"asset", "version minVersion", read},
     {"asset", "generator copyright", inert},
     {"scene", "nodes", read},
     {"scene", "name", inert},
-    {"node", "children mesh matrix translation rotation scale name skin weights", read},
-    {"node", "camera", lost, "camera"},
+    {"node", "children mesh matrix translation rotation scale name skin weights camera", read},
+    {"camera", "type perspective orthographic", read},
+    {"camera", "name", inert},
+    // znear zfar: nothing is clipped
+    {"perspective", "yfov aspectRatio", read},
+    {"perspective", "znear zfar", inert},
+    {"orthographic", "xmag ymag", read},
+    {"orthographic", "znear zfar", inert},
+    {"KHR_lights_punctual", "light", read},
+    {"light", "type color intensity spot", read},
+    // range: a hint to leave out the light beyond
+    {"light", "range name", inert},
+    {"spot", "innerConeAngle outerConeAngle", read},
     {"mesh", "primitives weights name", read},
     {"primitive", "attributes indices material mode targets", read},
     // TANGENT: its sign; a direction that differs from that of u is named
-    {"attributes", "POSITION NORMAL TEXCOORD_* TANGENT JOINTS_* WEIGHTS_*", read},
-    {"attributes", "COLOR_*", lost, "vertex colours (COLOR_0)"},
+    {"attributes", "POSITION NORMAL TEXCOORD_* TANGENT JOINTS_* WEIGHTS_* COLOR_0", read},
+    {"attributes", "COLOR_*", lost, "further vertex colours (COLOR_1)"},
     // _*: of applications
     {"attributes", "_*", inert},
     {"skin", "joints inverseBindMatrices", read},
@@ -34,12 +43,10 @@ constexpr GltfProperty kProperties[] = {
     {"instances", "TRANSLATION ROTATION SCALE", read},
     // _*: of applications
     {"instances", "_*", inert},
-    {"material", "name pbrMetallicRoughness normalTexture alphaMode alphaCutoff", read},
-    // doubleSided: all surfaces have two sides
-    // emissiveTexture: multiplied by the factor
-    {"material", "doubleSided emissiveTexture", inert},
+    // doubleSided: of surfaces that emit; all others have two sides
+    {"material",
+     "name pbrMetallicRoughness normalTexture alphaMode alphaCutoff emissiveFactor emissiveTexture doubleSided", read},
     {"material", "occlusionTexture", surface, "occlusion map (occlusionTexture)"},
-    {"material", "emissiveFactor", surface, "emission", "[0,0,0]"},
     // metallicFactor: what has no counterpart is named as gloss or metalness
     {"pbrMetallicRoughness", "baseColorFactor baseColorTexture metallicFactor roughnessFactor", read},
     {"pbrMetallicRoughness", "metallicRoughnessTexture", surface, "roughness and metalness map"},
@@ -51,8 +58,8 @@ constexpr GltfProperty kProperties[] = {
     {"textureInfo", "index texCoord scale", read},
     {"KHR_texture_transform", "offset rotation scale texCoord", read},
     {"KHR_materials_diffuse_transmission", "diffuseTransmission*", read},
-    // specularFactor: the gloss is named by the roughness
-    {"KHR_materials_specular", "specularFactor", inert},
+    // specularFactor: 0 is a surface without gloss
+    {"KHR_materials_specular", "specularFactor", read},
     {"KHR_materials_specular", "specularColorFactor", surface, "colour of the gloss (specularColorFactor)", "[1,1,1]"},
     {"KHR_materials_specular", "specularTexture specularColorTexture", surface, "specular map"},
     {"KHR_materials_transmission", "transmissionFactor", read},
@@ -62,8 +69,7 @@ constexpr GltfProperty kProperties[] = {
     // attenuationColor: with attenuationDistance
     {"KHR_materials_volume", "thicknessTexture attenuationColor", inert},
     {"KHR_materials_volume", "attenuationDistance", surface, "absorption inside a volume (attenuationDistance)"},
-    // emissiveStrength: with the emission
-    {"KHR_materials_emissive_strength", "emissiveStrength", inert},
+    {"KHR_materials_emissive_strength", "emissiveStrength", read},
     {"EXT_texture_webp", "source", read},
     {"texture", "source sampler", read},
     {"texture", "name", inert},
@@ -76,10 +82,19 @@ constexpr GltfProperty kProperties[] = {
 
 /// Required ones are no error.
 constexpr std::string_view kRead[] = {
-    "KHR_texture_transform",           "KHR_mesh_quantization",      "KHR_materials_diffuse_transmission",
-    "KHR_materials_emissive_strength", "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",          "KHR_materials_transmission", "KHR_materials_volume",
-    "EXT_mesh_gpu_instancing",         "EXT_texture_webp",
+    "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_unlit",
+    "KHR_lights_punctual",
+    "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
 #ifdef FROND_HAS_MESHOPTIMIZER
     "EXT_meshopt_compression",
 #endif

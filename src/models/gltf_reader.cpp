@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "imports/node_map.h"
+#include "models/gltf_lights.h"
 #include "models/gltf_materials.h"
 #include "models/normal_map_sides.h"
 
@@ -74,7 +75,11 @@ class GltfReader {
       losses_.add("animation", nullptr, false, animations->size() - 1);
     if (const Json* asset = member(document_, "asset")) losses_.check("asset", *asset);
     add_nodes();
-    for (size_t i = 0; i < nodes_.size(); ++i) add_meshes(*element(document_, "nodes", nodes_[i]), nodes_[i], i);
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      const Json& node = *element(document_, "nodes", nodes_[i]);
+      add_meshes(node, nodes_[i], i);
+      add_view(node, nodes_[i]);
+    }
     if (scene_.meshes.empty()) throw std::runtime_error("it has no triangles");
     scene_.losses = losses_.finish();
     return std::move(scene_);
@@ -112,6 +117,17 @@ class GltfReader {
       nodes_.push_back(number);
       scene_.nodes.push_back({.name = std::string(text(*node, "name")), .parent = index, .to_parent = map.m});
     }
+  }
+
+  /// Adds the light and the camera of a node.
+  void add_view(const Json& node, uint64_t number) {
+    const auto add = [&](auto object, auto& to) {
+      if (!object) return;
+      object->to_world = to_world_.at(number).m;
+      to.push_back(*object);
+    };
+    add(gltf_light(document_, node, losses_), scene_.lights);
+    add(gltf_camera(document_, node, losses_), scene_.cameras);
   }
 
   /// Adds the mesh of a node, to itself or to further nodes.
@@ -211,6 +227,7 @@ class GltfReader {
     ImportedMesh mesh{.name = name, .material = materials_.index_of(integer(primitive, "material"))};
     mesh.positions = vertices<3>(*attributes, "POSITION", place, 0);
     const size_t count = mesh.positions.size();
+    apply_colors(*attributes, place, mesh);
     mesh.normals = vertices<3>(*attributes, "NORMAL", place, count);
     add_coordinates(*attributes, place, mesh);
     const auto tangents = vertices<4>(*attributes, "TANGENT", place, count);
@@ -222,6 +239,24 @@ class GltfReader {
     const bool is_moved = !weights.empty() || !joints.empty();
     if (add_by_side(std::move(mesh), tangents, scene_, to) && !is_moved)
       losses_.add("direction of TANGENT, which differs from that of the texture coordinates,", &material, false);
+  }
+
+  /// Vertex colours are factors of the base colour. Those that all vertices share are of a material; others are lost.
+  void apply_colors(const Json& attributes, const std::string& place, ImportedMesh& mesh) {
+    const auto index = integer(attributes, "COLOR_0");
+    if (!index) return;
+    const Json* accessor = element(document_, "accessors", index);
+    const size_t width = accessor && text(*accessor, "type") == "VEC4" ? 4 : 3, count = mesh.positions.size();
+    const std::vector<float> c = data_.numbers<float>(*index, width, place + ", COLOR_0");
+    if (c.size() != count * width) throw std::runtime_error(place + ", COLOR_0: there are not as many as positions");
+    ImportedMaterial material = scene_.materials[mesh.material];
+    const bool has_alpha = width == 4 && material.alpha != ImportedMaterial::Alpha::opaque;
+    for (size_t i = 0; i < c.size(); ++i)
+      if (c[i] != c[i % width] && (i % width < 3 || has_alpha))
+        return losses_.add("colours of vertices that differ (COLOR_0)", &material.name);
+    for (size_t k = 0; k < 3; ++k) material.color[k] *= std::clamp(c[k], 0.f, 1.f);
+    if (has_alpha) material.opacity *= std::clamp(c[3], 0.f, 1.f);
+    mesh.material = scene_.add(std::move(material));
   }
 
   /// Whether the positions are also there without the extension that compresses them.

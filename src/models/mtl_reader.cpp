@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace {
 /// Treatment of a statement by the import.
 enum class Use : uint8_t {
   color,     ///< the colour
+  emission,  ///< Ke
   opacity,   ///< d
   clarity,   ///< Tr: 1 - d
   map,       ///< an image that is read
@@ -34,7 +36,10 @@ constexpr MtlStatement kStatements[] = {
     {"kd", Use::color},
     {"d", Use::opacity},
     {"tr", Use::clarity},
+    {"ke", Use::emission},
     {"map_kd", Use::map},
+    {"map_ke", Use::map},
+    {"map_emissive", Use::map},
     {"map_d", Use::map},
     {"norm", Use::map},
     {"map_kn", Use::map},
@@ -48,7 +53,6 @@ constexpr MtlStatement kStatements[] = {
     {"map_aat", Use::inert},
     {"illum", Use::model},
     {"ks", Use::unless_0, "gloss"},
-    {"ke", Use::unless_0, "emission"},
     {"tf", Use::unless_1, "transmission filter (Tf)"},
     {"pr", Use::unless_1, "gloss"},
     {"pm", Use::unless_0, "metalness (Pm)"},
@@ -57,8 +61,6 @@ constexpr MtlStatement kStatements[] = {
     {"aniso", Use::unless_0, "anisotropy (aniso)"},
     {"map_ks", Use::lost, "specular map"},
     {"map_ns", Use::lost, "map of gloss (map_Ns)"},
-    {"map_ke", Use::lost, "emission map"},
-    {"map_emissive", Use::lost, "emission map"},
     {"map_bump", Use::lost, "height map"},
     {"bump", Use::lost, "height map"},
     {"map_disp", Use::lost, "displacement map"},
@@ -127,7 +129,9 @@ class MtlReader {
     const std::string says(known->says);
     switch (known->use) {
       case Use::color:
-        return color();
+        return color(s, material_->color, 1);
+      case Use::emission:
+        return color(s, material_->emission, std::numeric_limits<float>::max());
       case Use::opacity:
       case Use::clarity:
         return opacity(known->use == Use::clarity);
@@ -167,15 +171,15 @@ class MtlReader {
   }
 
   /// One number is a grey.
-  void color() {
+  void color(const ObjStatement& s, std::array<float, 3>& to, float most) {
     std::vector<float> values;
     for (const std::string_view word : words_)
-      if (const auto value = number_of(word)) values.push_back(std::clamp(float(*value), 0.f, 1.f));
+      if (const auto value = number_of(word)) values.push_back(std::clamp(float(*value), 0.f, most));
     if (values.size() != words_.size() || values.empty() || values.size() > 3)
-      return record_loss("colour that is not red, green and blue (Kd " +
+      return record_loss("colour that is not red, green and blue (" + keyword_text(s) + " " +
                          std::string(words_.empty() ? "" : words_[0].substr(0, 20)) + ")");
     values.resize(3, values[0]);
-    material_->color = {values[0], values[1], values[2]};
+    to = {values[0], values[1], values[2]};
   }
 
   /// d and Tr of one material state the same number twice.
@@ -229,9 +233,10 @@ class MtlReader {
     if (rest.empty()) return record_loss(keyword_text(s) + " without a file", true);
     texture.image = image_index(std::string(rest));
     if (is_normal) material_->normal_scale = {bump, bump};
-    (is_normal            ? material_->normal_texture
-     : keyword == "map_d" ? material_->opacity_texture
-                          : material_->color_texture) = texture;
+    (is_normal             ? material_->normal_texture
+     : keyword == "map_d"  ? material_->opacity_texture
+     : keyword == "map_kd" ? material_->color_texture
+                           : material_->emission_texture) = texture;
   }
 
   /// Returns the index of an image; each name has one.

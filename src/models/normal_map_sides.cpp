@@ -29,10 +29,7 @@ Direction direction_of(const ImportedMesh& mesh, const std::array<uint32_t, 3>& 
 uint32_t inverted(uint32_t material, ImportedScene& scene) {
   ImportedMaterial other = scene.materials[material];
   other.normal_scale[1] = -other.normal_scale[1];
-  const auto found = std::ranges::find(scene.materials, other);
-  if (found != scene.materials.end()) return uint32_t(found - scene.materials.begin());
-  scene.materials.push_back(std::move(other));
-  return uint32_t(scene.materials.size() - 1);
+  return scene.add(std::move(other));
 }
 
 /// Removes the vertices that no triangle has: primitives may share one array of vertices.

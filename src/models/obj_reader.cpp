@@ -295,6 +295,7 @@ class ObjReader {
       ImportedMaterial m = found == materials.by_name.end() ? ImportedMaterial{.name = name} : found->second;
       // The image replaces the colour, which exporters set to any value beside an image, black too.
       if (m.color_texture.image >= 0) m.color = {1, 1, 1};
+      if (m.emission_texture.image >= 0 && !m.is_emitter()) m.emission = {1, 1, 1};
       by_name_[name] = uint32_t(scene_.materials.size());
       scene_.materials.push_back(std::move(m));
     }

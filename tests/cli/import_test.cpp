@@ -327,11 +327,12 @@ TEST_F(ImportCommand, DoubleSheetsAreReportedAndRemoved) {
 
 TEST_F(ImportCommand, WhatCannotBeMappedIsNamed) {
   folder_.write("plant.gltf",
-                gltf(R"({"mesh":0,"children":[1]},{"camera":0})",
-                     R"({"name":"pot","emissiveFactor":[1,1,1],"pbrMetallicRoughness":{"roughnessFactor":0.2,
+                gltf(R"({"mesh":0})",
+                     R"({"name":"pot","occlusionTexture":{"index":0},"pbrMetallicRoughness":{"roughnessFactor":0.2,
 "metallicFactor":0}})",
-                     embedded(), R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}])"));
-  EXPECT_THAT(imported("plant.gltf").err, HasSubstr("left out: camera, emission of \"pot\", gloss of \"pot\""));
+                     embedded(), R"(,"animations":[{}])"));
+  EXPECT_THAT(imported("plant.gltf").err,
+              HasSubstr("left out: animation, occlusion map (occlusionTexture) of \"pot\", gloss of \"pot\""));
   folder_.write("bad.mtl", "newmtl leaf\nmap_Kd nowhere.png\nnewmtl stem\nmap_Kd text.png\n");
   folder_.write("text.png", "not an image");
   folder_.write("bad.obj", std::string("mtllib bad.mtl\n") + kQuad + "usemtl leaf\nf 1 2 3\nusemtl stem\nf 1 3 4\n");
@@ -341,18 +342,16 @@ TEST_F(ImportCommand, WhatCannotBeMappedIsNamed) {
 
 /// A warning, which is an error in strict mode: then nothing is written.
 TEST_F(ImportCommand, LossesAreErrorsInStrictMode) {
-  folder_.write("plant.gltf", gltf(R"({"mesh":0,"children":[1,2]},{"camera":0},{"camera":0})",
-                                   R"({"name":"pot","extensions":{"KHR_materials_sheen":{}}})", embedded(),
-                                   R"(,"extensionsUsed":["KHR_materials_sheen"],
-"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}])"));
+  folder_.write("plant.gltf", gltf(R"({"mesh":0})", R"({"name":"pot","extensions":{"KHR_materials_sheen":{}}})",
+                                   embedded(), R"(,"extensionsUsed":["KHR_materials_sheen"],"animations":[{},{}])"));
   EXPECT_THAT(imported("plant.gltf").err,
-              HasSubstr("warning: left out: camera (2 times), extension KHR_materials_sheen of \"pot\"\n"));
+              HasSubstr("warning: left out: animation (2 times), extension KHR_materials_sheen of \"pot\"\n"));
   EXPECT_THAT(refusal("plant.gltf", {"--strict"}), HasSubstr("KHR_materials_sheen"));
-  folder_.write("plant.mtl", "newmtl pot\nKe 1 1 1\n");
+  folder_.write("plant.mtl", "newmtl pot\nKs 1 1 1\n");
   folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl pot\nf 1 2 3\nf 1 2\n");
   EXPECT_THAT(imported("plant.obj").err,
-              HasSubstr("left out: face of fewer than 3 corners, first in line 12, emission of \"pot\"\n"));
-  EXPECT_THAT(refusal("plant.obj", {"--strict"}), HasSubstr("emission of \"pot\""));
+              HasSubstr("left out: face of fewer than 3 corners, first in line 12, gloss of \"pot\"\n"));
+  EXPECT_THAT(refusal("plant.obj", {"--strict"}), HasSubstr("gloss of \"pot\""));
   // A leaf material replaces the surface.
   folder_.write("leaf.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl pot\nf 1 2 3\n");
   EXPECT_THAT(imported("leaf.obj", {"--strict", "--leaf", "pot=leaf_lambert"}).err, Not(HasSubstr("left out")));
@@ -416,6 +415,49 @@ TEST_F(ImportCommand, DiffuseTransmission) {
   const Image share = read_image(path("scene-files/leaf-transmission.png"), {}).image;
   EXPECT_NEAR(share.at(0, 0, 0), 0.4f, 0.003f);
   EXPECT_NEAR(share.at(7, 0, 0), 0.4f * 0.3f, 0.003f);
+}
+
+/// A camera that looks along -z of glTF, which is +y of the scene, from (0.5, 1, 5); a spot turned to -x; a
+/// quadrilateral that emits, of which there are two. Lengths are doubled: an intensity is 4 times as large.
+TEST_F(ImportCommand, CameraLightsAndEmission) {
+  const std::string half = std::to_string(std::sqrt(0.5));
+  folder_.write(
+      "plant.gltf",
+      gltf(R"({"children":[1,2,3,4,5]},{"mesh":0},{"mesh":0,"translation":[2,0,0]},{"camera":0,"translation":[0.5,1,5]},
+{"extensions":{"KHR_lights_punctual":{"light":0}},"rotation":[0,)" +
+               half + ",0," + half + R"(]},{"extensions":{"KHR_lights_punctual":{"light":1}}})",
+           R"({"name":"lamp","doubleSided":true,"emissiveFactor":[1,0.5,0],"extensions":
+{"KHR_materials_emissive_strength":{"emissiveStrength":4}}})",
+           embedded(), R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.4,"znear":1,
+"aspectRatio":2}}],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","intensity":3},
+{"type":"directional","color":[1,0,0],"intensity":7}]}})"));
+  const Outcome o = imported("plant.gltf", {"--strict", "--scale", "2"});
+  EXPECT_THAT(o.out, AllOf(HasSubstr("the model's camera\n2 lights in place of sun and sky\n"),
+                           HasSubstr("lamp: diffuse, 4 triangles")));
+  EXPECT_THAT(
+      text_of(path("scene.pbrt")),
+      AllOf(HasSubstr("LookAt 1 -10 2   1 -9 2   0 0 1\nCamera \"perspective\" \"float fov\" 22.918"),
+            HasSubstr("\"integer xresolution\" 800 \"integer yresolution\" 400"),
+            HasSubstr("LightSource \"spot\" \"rgb I\" [ 12 12 12 ] \"point3 from\" [ 0 0 0 ] \"point3 to\" [ -1 "),
+            HasSubstr("\"float coneangle\" 45 \"float conedeltaangle\" 45\n"),
+            HasSubstr("LightSource \"distant\" \"rgb L\" [ 7 0 0 ]"), Not(HasSubstr("sky"))));
+  EXPECT_THAT(plant(), AllOf(HasSubstr("AreaLightSource \"diffuse\" \"rgb L\" [ 4 2 0 ] \"bool twosided\" true\n"),
+                             Not(HasSubstr("ObjectInstance"))));
+}
+
+/// The image of an emission, and Ke as its factor. Coordinates beyond the image are clamped in an area light.
+TEST_F(ImportCommand, EmissionByAnImage) {
+  folder_.write("glow.png", png_with_alpha());
+  folder_.write("plant.mtl", "newmtl lamp\nmap_Ke glow.png\nKe 3 3 3\nd 1\n");
+  folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl lamp\nf 1/1 2/2 3/3 4/4\n");
+  EXPECT_THAT(imported("plant.obj", {"--strict"}).err, Not(HasSubstr("left out")));
+  EXPECT_THAT(plant(), HasSubstr("AreaLightSource \"diffuse\" \"string filename\" \"scene-files/glow.png\" \"float "
+                                 "scale\" 3 \"bool twosided\" true\n"));
+  folder_.write("plant.mtl", "newmtl lamp\nmap_Ke -s 2 2 glow.png\n");
+  EXPECT_THAT(imported("plant.obj").err, HasSubstr("left out: repetition of the image of the emission of \"lamp\""));
+  folder_.write("plant.mtl", "newmtl lamp\nmap_Ke nowhere.png\n");
+  EXPECT_THAT(imported("plant.obj").err, HasSubstr("image \"nowhere.png\" is left out"));
+  EXPECT_THAT(plant(), Not(HasSubstr("AreaLightSource")));
 }
 
 TEST_F(ImportCommand, ClearSurfaces) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -17,6 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pointwise;
+using ::testing::UnorderedElementsAre;
 
 /// A quadrilateral, 1 x 1: positions, texture coordinates (v down), indices.
 std::string quad() {
@@ -91,11 +93,18 @@ Json everything(std::string& buffer) {
   const size_t turns =
       add(bytes_of<float>({0, 0, 1, 0, 0, 1, 0, 0}), R"({"componentType":5126,"count":2,"type":"VEC4"})");
   add(bytes_of<float>({1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1}), vec4);  // other tangents
+  const size_t colors = add(bytes_of<float>({.5f, 1, 1, .5f, 1, 1, .5f, 1, 1, .5f, 1, 1}), vec3);
   json["skins"] = Json::parse(R"([{"joints":[3],"skeleton":3,"name":"s"}])");
   json["skins"][0]["inverseBindMatrices"] = inverse;
   json["nodes"] =
       Json::parse(R"([{"mesh":0,"name":"plain","children":[1,2,3],"translation":[1,0,0],"rotation":[0,0,1,0],
-"scale":[2,2,2]},{"mesh":0,"matrix":[1,0,0,0,0,2,0,0,0,0,1,0,0,0,0,1]},{"mesh":1,"skin":0},{}])");
+"scale":[2,2,2]},{"mesh":0,"matrix":[1,0,0,0,0,2,0,0,0,0,1,0,0,0,0,1]},{"mesh":1,"skin":0},{"camera":1}])");
+  json["nodes"][0]["camera"] = 0;
+  json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  json["cameras"] = Json::parse(R"([{"type":"perspective","name":"c","perspective":{"yfov":1,"aspectRatio":2,
+"znear":1,"zfar":9}},{"type":"orthographic","orthographic":{"xmag":2,"ymag":1,"znear":1,"zfar":9}}])");
+  json["extensions"]["KHR_lights_punctual"]["lights"] = Json::parse(R"([{"type":"spot","color":[1,0.5,0],
+"intensity":3,"range":1,"name":"l","spot":{"innerConeAngle":0.1,"outerConeAngle":0.2}}])");
   json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
       {"TRANSLATION", shifts}, {"SCALE", shifts}, {"ROTATION", turns}, {"_ID", 9}};
   Json skinned = json["meshes"][0];
@@ -109,9 +118,14 @@ Json everything(std::string& buffer) {
   json["meshes"].push_back(skinned);
   json["meshes"][1]["weights"] = Json::parse("[1]");
   json["meshes"][0]["name"] = "blade";
+  json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colors;
+  json["materials"][0]["emissiveFactor"] = {1, 0.5, 0};
+  json["materials"][0]["emissiveTexture"] = Json::parse(R"({"index":1})");
+  json["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 2;
   json["materials"][0]["normalTexture"] = Json::parse(R"({"index":1,"scale":0.5})");
-  json["materials"].push_back(Json::parse(R"({"name":"thin","pbrMetallicRoughness":{"metallicFactor":0},"extensions":{
-"KHR_materials_emissive_strength":{"emissiveStrength":2},"KHR_materials_specular":{"specularFactor":0},"KHR_materials_diffuse_transmission":{
+  json["materials"].push_back(
+      Json::parse(R"({"name":"thin","pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.5},"extensions":{
+"KHR_materials_specular":{"specularFactor":0},"KHR_materials_diffuse_transmission":{
 "diffuseTransmissionFactor":0.25,"diffuseTransmissionColorFactor":[1,0.5,0.25],"diffuseTransmissionTexture":{"index":1},
 "diffuseTransmissionColorTexture":{"index":1,"extensions":{"KHR_texture_transform":{"offset":[0.1,0.2],"rotation":1,
 "scale":[2,3],"texCoord":0}}}}}})"));
@@ -135,6 +149,12 @@ const std::map<std::string_view, std::string> kPlaces{
     {"mesh", "/meshes/0"},
     {"primitive", "/meshes/1/primitives/0"},
     {"attributes", "/meshes/1/primitives/0/attributes"},
+    {"camera", "/cameras/0"},
+    {"perspective", "/cameras/0/perspective"},
+    {"orthographic", "/cameras/1/orthographic"},
+    {"KHR_lights_punctual", "/nodes/0/extensions/KHR_lights_punctual"},
+    {"light", "/extensions/KHR_lights_punctual/lights/0"},
+    {"spot", "/extensions/KHR_lights_punctual/lights/0/spot"},
     {"skin", "/skins/0"},
     {"EXT_mesh_gpu_instancing", "/nodes/1/extensions/EXT_mesh_gpu_instancing"},
     {"instances", "/nodes/1/extensions/EXT_mesh_gpu_instancing/attributes"},
@@ -146,7 +166,7 @@ const std::map<std::string_view, std::string> kPlaces{
     {"KHR_materials_transmission", "/materials/2/extensions/KHR_materials_transmission"},
     {"KHR_materials_ior", "/materials/2/extensions/KHR_materials_ior"},
     {"KHR_materials_volume", "/materials/2/extensions/KHR_materials_volume"},
-    {"KHR_materials_emissive_strength", "/materials/1/extensions/KHR_materials_emissive_strength"},
+    {"KHR_materials_emissive_strength", "/materials/0/extensions/KHR_materials_emissive_strength"},
     {"textureInfo", "/materials/0/normalTexture"},
     {"KHR_texture_transform",
      "/materials/1/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture/extensions/"
@@ -163,6 +183,8 @@ const std::map<std::string, std::vector<std::string>> kValues{
     {"glTF.scene", {"1"}},
     {"glTF.extensionsRequired", {"[\"VENDOR_x\"]"}},
     {"glTF.extensionsUsed", {"[\"VENDOR_x\"]"}},
+    {"camera.type", {"", "/cameras/1"}},
+    {"camera.orthographic", {"", "/cameras/1"}},
     {"node.matrix", {"", "/nodes/1"}},
     {"node.skin", {"", "/nodes/2"}},
     {"node.weights", {"[0.5]", "/nodes/2"}},
@@ -182,6 +204,8 @@ const std::map<std::string, std::vector<std::string>> kValues{
     {"attributes.TEXCOORD_*", {"", "/meshes/0/primitives/0/attributes"}},
     {"attributes.NORMAL", {"", "/meshes/0/primitives/0/attributes"}},
     {"attributes.TANGENT", {"10", "/meshes/0/primitives/0/attributes"}},
+    {"attributes.COLOR_0", {"", "/meshes/0/primitives/0/attributes"}},
+    {"attributes.COLOR_*", {"", "", "COLOR_1"}},
     {"image.bufferView", {"0", "/images/0"}},
     {"image.uri", {"\"b.png\""}},
     {"image.mimeType", {"\"image/png\""}},
@@ -243,9 +267,8 @@ TEST(GltfReader, UnknownPropertiesAreNamed) {
 }
 
 TEST(GltfReader, ExtensionsThatAreNotReadAreNamed) {
-  for (const char* name :
-       {"KHR_materials_unlit", "KHR_materials_sheen", "KHR_materials_clearcoat", "KHR_materials_iridescence",
-        "KHR_materials_anisotropy", "KHR_materials_dispersion", "VENDOR_x"}) {
+  for (const char* name : {"KHR_materials_sheen", "KHR_materials_clearcoat", "KHR_materials_iridescence",
+                           "KHR_materials_anisotropy", "KHR_materials_dispersion", "VENDOR_x"}) {
     const std::string pointer = std::string("/materials/0/extensions/") + name;
     const auto expected = std::string("extension ") + name + " of \"leaf\"";
     EXPECT_THAT(losses_with(pointer.c_str(), "{}"), ElementsAre(expected));
@@ -260,8 +283,75 @@ TEST(GltfReader, ExtensionsThatAreNotReadAreNamed) {
   EXPECT_THAT(losses_with("/extensions/EXT_lights_ies", "{}"), ElementsAre("extension EXT_lights_ies"));
   EXPECT_THAT(losses_with("/meshes/0/primitives/0/extensions/KHR_materials_variants", "{}"),
               ElementsAre("extension KHR_materials_variants"));
-  EXPECT_THAT(losses_with("/nodes/0/extensions/KHR_lights_punctual", R"({"light":0})"),
-              ElementsAre("light (KHR_lights_punctual)"));
+}
+
+/// Unlit surfaces have no gloss. A surface whose gloss is 0 has none to lose.
+TEST(GltfReader, UnlitAndMattSurfaces) {
+  Json json = with(model(), "/materials/0/extensions/KHR_materials_unlit", "{}");
+  json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
+  json["extensionsRequired"] = {"KHR_materials_unlit"};
+  EXPECT_THAT(losses(json), ElementsAre("shading without light (KHR_materials_unlit) of \"leaf\""));
+  json = with(model(), "/materials/0/extensions/KHR_materials_specular/specularFactor", "0");
+  json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
+  EXPECT_THAT(losses(json), IsEmpty());
+}
+
+TEST(GltfReader, LightsAndCamerasAreWhereTheirNodesAre) {
+  std::string buffer;
+  Json json = everything(buffer);
+  const auto read_json = [&] { return read_text(json.dump(), {{"a.bin", buffer}}); };
+  const ImportedScene scene = read_json();
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].type, ImportedLight::Type::spot);
+  EXPECT_THAT(scene.lights[0].color, ElementsAre(3, 1.5, 0));
+  EXPECT_EQ(std::pair(scene.lights[0].inner, scene.lights[0].outer), std::pair(0.1, 0.2));
+  EXPECT_EQ(scene.lights[0].to_world[3], 1);
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  EXPECT_DOUBLE_EQ(scene.cameras[0].half[1], std::tan(0.5));
+  EXPECT_DOUBLE_EQ(scene.cameras[0].half[0], 2 * std::tan(0.5));
+  EXPECT_TRUE(scene.cameras[1].is_orthographic);
+  EXPECT_THAT(scene.cameras[1].half, ElementsAre(2, 1));
+  EXPECT_EQ(scene.cameras[1].to_world[3], 1);  // of its parent
+  json["extensions"]["KHR_lights_punctual"]["lights"][0] = {{"type", "directional"}};
+  EXPECT_EQ(read_json().lights[0].type, ImportedLight::Type::distant);
+  EXPECT_THAT(read_json().lights[0].color, ElementsAre(1, 1, 1));
+  json["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "area";
+  json["cameras"][0]["perspective"]["yfov"] = 0;
+  json["nodes"][3]["camera"] = 7;
+  EXPECT_THAT(texts_of(read_json().losses),
+              UnorderedElementsAre(HasSubstr("gloss"), "light of an unknown type (KHR_lights_punctual)",
+                                   "camera without a usable field of view", "camera that does not exist"));
+}
+
+/// Colours of vertices are factors: those that differ have no counterpart.
+TEST(GltfReader, VertexColours) {
+  const auto scene_of = [](const std::vector<float>& colors, const char* type, const char* mode = "OPAQUE") {
+    Json json = model();
+    std::string buffer = quad();
+    const std::string accessor = std::string(R"({"componentType":5126,"count":4,"type":")") + type + "\"}";
+    json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        add_accessor(json, buffer, bytes_of(colors), accessor);
+    json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 1, 1, 1};
+    json["materials"][0]["alphaMode"] = mode;
+    return read_text(json.dump(), {{"a.bin", buffer}});
+  };
+  const auto material = [](const ImportedScene& scene) { return scene.materials[scene.meshes[0].material]; };
+  using C = std::array<float, 3>;
+  const std::vector<float> same{.5f, .25f, 1, .5f, .25f, 1, .5f, .25f, 1, .5f, .25f, 1};
+  EXPECT_EQ(material(scene_of(same, "VEC3")).color, (C{0.25f, 0.25f, 1}));
+  EXPECT_THAT(scene_of(same, "VEC3").losses, IsEmpty());
+  const std::vector<float> white(12, 1.f);
+  EXPECT_EQ(scene_of(white, "VEC3").materials.size(), 1u);
+  std::vector<float> other = same;
+  other[7] = 0;
+  EXPECT_THAT(texts_of(scene_of(other, "VEC3").losses),
+              ElementsAre("colours of vertices that differ (COLOR_0) of \"leaf\""));
+  std::vector<float> alpha(16, 0.5f);
+  EXPECT_EQ(material(scene_of(alpha, "VEC4", "BLEND")).opacity, 0.5f);
+  EXPECT_EQ(material(scene_of(alpha, "VEC4")).opacity, 1);
+  alpha[3] = 1;  // without effect on an opaque surface
+  EXPECT_THAT(scene_of(alpha, "VEC4").losses, IsEmpty());
+  EXPECT_EQ(scene_of(alpha, "VEC4", "BLEND").losses.size(), 1u);
 }
 
 TEST(GltfReader, SpecularColourAndMapAreNamed) {
@@ -295,13 +385,13 @@ TEST(GltfReader, GlossAndMetalness) {
 /// Objects that the scene does not have are not compared.
 TEST(GltfReader, OnlyTheSceneCounts) {
   Json json = model();
-  json["nodes"].push_back({{"camera", 0}, {"mesh", 0}});
-  json["materials"].push_back({{"emissiveFactor", {1, 1, 1}}});
+  json["nodes"].push_back({{"extensions", {{"X_y", Json::object()}}}, {"mesh", 0}});
+  json["materials"].push_back({{"occlusionTexture", {{"index", 0}}}});
   EXPECT_THAT(losses(json), IsEmpty());
   json["scenes"].push_back({{"nodes", {1}}});
   EXPECT_THAT(losses(json), ElementsAre("further scene"));
   json["scene"] = 1;
-  EXPECT_THAT(losses(json), ElementsAre("further scene", "camera"));
+  EXPECT_THAT(losses(json), ElementsAre("further scene", "extension X_y"));
 }
 
 TEST(GltfReader, WhatIsRequiredAndNotReadIsRefused) {

@@ -139,6 +139,8 @@ TEST(MtlReader, StatementsThatAreRead) {
   EXPECT_EQ(m.normal_scale, (std::array<float, 2>{0.5f, 0.5f}));
   EXPECT_THAT(scene.losses, IsEmpty());
   EXPECT_EQ(read_obj(kMaterial, "newmtl m\nKd .5\n").materials[0].color, (P{0.5f, 0.5f, 0.5f}));
+  EXPECT_EQ(read_obj(kMaterial, "newmtl m\nKe 2 0 1\n").materials[0].emission, (P{2, 0, 1}));
+  EXPECT_EQ(read_obj(kMaterial, "newmtl m\nmap_Ke e.png\n").materials[0].emission, (P{1, 1, 1}));
 }
 
 TEST(MtlReader, TextureOptionsMoveTheCoordinates) {
@@ -151,8 +153,6 @@ TEST(MtlReader, TextureOptionsMoveTheCoordinates) {
 TEST(MtlReader, WhatIsNotReadIsNamed) {
   for (const auto& [statement, what] : std::map<std::string, std::string>{
            {"Ks 1 1 1", "gloss"},
-           {"Ke 0 1 0", "emission"},
-           {"map_Ke e.png", "emission map"},
            {"Tf 1 .5 1", "transmission filter (Tf)"},
            {"illum 4", "reflection or refraction (illum 4)"},
            {"Pr 0.3", "gloss"},

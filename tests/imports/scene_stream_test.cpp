@@ -27,7 +27,9 @@ ImportedScene a_scene() {
                    .triangles = {{0, 1, 2}}}};
   scene.nodes = {{.name = "root", .parent = -1, .to_parent = {2, 0, 0, 10, 0, 2, 0, 20, 0, 0, 2, 30}},
                  {.name = "child", .parent = 0, .to_parent = {0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3}, .meshes = {0}}};
-  scene.losses = {{"camera", 2}, {"gloss", 1, {"leaf"}, true}};
+  scene.lights = {{.type = ImportedLight::Type::spot, .color = {1, 2, 3}, .inner = 0.1, .outer = 0.2}};
+  scene.cameras = {{.is_orthographic = true, .half = {2, 1}}};
+  scene.losses = {{"animation", 2}, {"gloss", 1, {"leaf"}, true}};
   scene.warnings = {"a warning"};
   return scene;
 }
@@ -56,6 +58,12 @@ TEST(SceneStream, InvalidIndicesAndNumbersAreErrors) {
   is_refused([](ImportedScene& s) { s.nodes[1].meshes[0] = 1; });
   is_refused([](ImportedScene& s) { s.nodes[1].to_parent[0] = std::nan(""); });
   is_refused([](ImportedScene& s) { s.materials[0].color_texture.image = 1; });
+  is_refused([](ImportedScene& s) { s.materials[0].emission[2] = std::numeric_limits<float>::infinity(); });
+  is_refused([](ImportedScene& s) { s.lights[0].color[1] = -1; });
+  is_refused([](ImportedScene& s) { s.lights[0].inner = 0.3; });
+  is_refused([](ImportedScene& s) { s.lights[0].to_world[3] = std::nan(""); });
+  is_refused([](ImportedScene& s) { s.cameras[0].half[0] = 0; });
+  is_refused([](ImportedScene& s) { s.cameras[0].to_world[3] = std::nan(""); });
 }
 
 /// p = to_world * root * child * v, computed by hand: child turns (1, 0, 0) to (0, 1, 0) and shifts to (1, 3, 3); root
@@ -91,6 +99,21 @@ TEST(PlantGeometry, MeshesOfSeveralNodesAreObjectsAndFlatNodesAreLeftOut) {
   EXPECT_EQ(geometry.instance_count(), 2u);
   EXPECT_EQ(geometry.flat_nodes, 1u);
   EXPECT_EQ(geometry.objects[0].instances[0].point({1, 0, 0}), (Vec3d{12, 26, 36}));
+}
+
+/// Objects cannot emit: instances of meshes that do are meshes, unless they are many.
+TEST(PlantGeometry, InstancesThatEmitAreMeshes) {
+  ImportedScene scene = a_scene();
+  scene.nodes.push_back(scene.nodes[1]);
+  scene.materials[0].emission = {0, 1, 0};
+  for (const bool keeps_objects : {false, true}) {
+    const PlantGeometry geometry = plant_geometry(scene, {}, keeps_objects);
+    EXPECT_TRUE(geometry.objects.empty());
+    ASSERT_EQ(geometry.meshes.size(), 1u);
+    EXPECT_EQ(geometry.meshes[0].triangles.size(), 2u);
+  }
+  scene.meshes[0].triangles.assign(500'001, {0, 1, 2});
+  EXPECT_EQ(plant_geometry(scene, {}).objects.size(), 1u);
 }
 
 TEST(PlantGeometry, WithoutTrianglesOrBeyondAllBoundsIsAnError) {
