@@ -39,7 +39,7 @@ print(json.dumps({"valid": valid, "message": message, "shaders": shaders, "nodes
 """
 
 
-def module(name):
+def module(name, requirement=None):
     """The Python that has a module: this one, or the one in a folder of its own, into which it is put if it can be."""
     if importlib.util.find_spec(name):
         return sys.executable
@@ -48,7 +48,7 @@ def module(name):
                                                      check=False).returncode == 0
     if not has() and name != "bpy":  # 370 MB: measurements/run exports installs it
         subprocess.run([sys.executable, "-m", "venv", VENV], capture_output=True, check=False)
-        subprocess.run([python, "-m", "pip", "install", "-q", name], capture_output=True, check=False)
+        subprocess.run([python, "-m", "pip", "install", "-q", requirement or name], capture_output=True, check=False)
     if not has():
         raise unittest.SkipTest(f"there is no Python module {name}")
     return str(python)
@@ -196,7 +196,7 @@ class ReadersTest(FrondTest):
             self.assert_near(map(float, found), right, 0.0005)
 
     def test_materialx_validates(self):
-        python = module("MaterialX")
+        python = module("MaterialX", "materialx==1.39.5")
         path = self.export("leaf.mtlx", "leaf_solved", "--format", "materialx", "--wavelengths", "608,551,455")
         found = self.python(python, MATERIALX, path)
         self.assertTrue(found["valid"], found["message"])
