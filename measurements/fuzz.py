@@ -35,7 +35,15 @@ def earlier_coverage(page):
             for file, lines, share in rows if (tools.ROOT / file).exists()]
 
 
-def text(runs, coverage):
+def machines(page):
+    """Returns the machines that the page names, and this one."""
+    name, version = tools.machine().split("; ")
+    earlier = re.search(r"^### Fuzzing\n\n(.*?); frond", page, re.M)
+    names = earlier[1].split(" and ") if earlier else []
+    return " and ".join(names + [name] * (name not in names)) + "; " + version
+
+
+def text(machine, runs, coverage):
     total = sum(run["executions"] for run in runs)
     findings = sum(run["findings"] for run in runs)
     rows = [[run["target"].replace("_", " "), f"{run['seconds'] / 60:g} min", f"{run['executions']:,}", f"{run['corpus']:,}",
@@ -44,7 +52,7 @@ def text(runs, coverage):
     files = [[f"`{file['file']}`", str(file["lines"]), f"{100 * file['covered'] / file['lines']:.1f} %"] for file in coverage]
     return f"""### Fuzzing
 
-{tools.machine()}. clang 14 or 16, AddressSanitizer, UndefinedBehaviorSanitizer, conversions from float to integer.
+{machine}. clang 14, AddressSanitizer, UndefinedBehaviorSanitizer, conversions from float to integer.
 {total:,} inputs, {findings} failures, in the last run of each target. Several targets ran at a time.
 
 {tools.table(["target", "time", "inputs", "corpus after it", "failures"], rows)}
@@ -64,4 +72,5 @@ if __name__ == "__main__":
     for target, run in zip(TARGETS, runs):
         if not run:
             print(f"{target} has no result")
-    tools.write_section(PAGE, "fuzz", text([run for run in runs if run], load(FUZZ / "coverage.json") or earlier_coverage(page)))
+    tools.write_section(PAGE, "fuzz", text(machines(page), [run for run in runs if run],
+                                           load(FUZZ / "coverage.json") or earlier_coverage(page)))
