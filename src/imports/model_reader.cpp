@@ -10,7 +10,9 @@
 #include "core/error.h"
 #include "imports/scene_stream.h"
 #include "system/child_process.h"
+#include "system/lower_case.h"
 #include "system/shared_object.h"
+#include "system/utf8.h"
 
 namespace frond {
 namespace {
@@ -29,26 +31,13 @@ fs::path reader_program() {
 }
 
 void check_name(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string extension = lower_case(path.extension().string());
   if (extension != ".obj" && extension != ".gltf" && extension != ".glb")
     fail({}, "cannot import \"{}\": models are .obj, .gltf or .glb files; Blender and MeshLab convert others",
          path.string());
   std::error_code error;
   if (!fs::exists(path, error)) fail({}, "cannot read \"{}\": there is no such file", path.string());
   if (!fs::is_regular_file(path, error)) fail({}, "cannot read \"{}\": it is no regular file", path.string());
-}
-
-/// Whether text is well-formed UTF-8, up to surrogates and overlong forms.
-bool is_utf8(const std::string& text) {
-  for (size_t i = 0; i < text.size();) {
-    const auto c = static_cast<unsigned char>(text[i++]);
-    const int more = c < 0x80 ? 0 : c >> 5 == 6 ? 1 : c >> 4 == 14 ? 2 : c >> 3 == 30 ? 3 : -1;
-    if (more < 0) return false;
-    for (int k = 0; k < more; ++k)
-      if (i == text.size() || (static_cast<unsigned char>(text[i++]) >> 6) != 2) return false;
-  }
-  return true;
 }
 
 /// Makes a name printable: names in OBJ files may be in any encoding.

@@ -8,6 +8,7 @@
 #include "imports/scene_import.h"
 #include "jobs/record/common_params.h"
 #include "scene/format/plugin_text.h"
+#include "system/lower_case.h"
 
 namespace frond {
 
@@ -110,9 +111,7 @@ double scale_of(const JobRun& run) {
 
 /// Reports what the file does not state: OBJ has neither unit nor axis.
 void report_assumptions(const JobRun& run, const ImportOptions& options, const ImportSummary& summary) {
-  std::string extension = options.model.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  if (extension != ".obj") return;
+  if (lower_case(options.model.extension().string()) != ".obj") return;
   std::vector<std::string> assumed;
   if (!run.args.given("unit") && !run.args.given("scale"))
     assumed.push_back(fmt::format("its unit is taken as m ({})", run.args.spelled("unit")));

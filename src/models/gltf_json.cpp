@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "system/utf8.h"
+
 namespace frond {
 namespace {
 
@@ -45,20 +47,7 @@ std::pair<std::string_view, std::string_view> chunks(std::string_view file) {
 std::string as_utf8(std::string_view bytes) {
   std::string out(bytes);
   for (size_t i = 0; i < out.size();) {
-    const auto at = [&out](size_t k) { return k < out.size() ? static_cast<unsigned char>(out[k]) : 0u; };
-    const unsigned c = at(i), next = at(i + 1);
-    const auto follows = [&](size_t k) { return (at(i + k) & 0xc0) == 0x80; };
-    size_t length = 0;
-    if (c < 0x80)
-      length = 1;
-    else if (c >= 0xc2 && c < 0xe0 && follows(1))
-      length = 2;
-    else if (c >= 0xe0 && c < 0xf0 && follows(1) && follows(2) && !(c == 0xe0 && next < 0xa0) &&
-             !(c == 0xed && next >= 0xa0))
-      length = 3;
-    else if (c >= 0xf0 && c < 0xf5 && follows(1) && follows(2) && follows(3) && !(c == 0xf0 && next < 0x90) &&
-             !(c == 0xf4 && next >= 0x90))
-      length = 4;
+    const size_t length = utf8_length(std::string_view(out).substr(i));
     if (length == 0) out[i] = '?';
     i += std::max<size_t>(length, 1);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/messages/excerpt.h"
+#include "system/utf8.h"
 
 namespace frond {
 namespace {
@@ -232,32 +233,6 @@ void check_header(const EncodedImage& file, std::string_view format) {
   if (format == "bmp") check_bmp(file);
   if (format == "targa") check_tga(file);
   if (format == "tiff") check_tiff(file);
-}
-
-bool is_utf8(std::string_view text) {
-  /// Characters of `length` bytes begin with a byte in [first, last] and are `least` or more.
-  struct Kind {
-    unsigned first, last;
-    size_t length;
-    uint32_t least;
-  };
-  constexpr Kind kKinds[] = {
-      {0x00, 0x7f, 1, 0}, {0xc2, 0xdf, 2, 0x80}, {0xe0, 0xef, 3, 0x800}, {0xf0, 0xf4, 4, 0x10000}};
-  for (size_t i = 0; i < text.size();) {
-    const unsigned first = static_cast<unsigned char>(text[i]);
-    const auto* kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return k.first <= first && first <= k.last; });
-    if (kind == std::end(kKinds) || text.size() - i < kind->length) return false;
-    uint32_t code = first - (kind->first & 0xf0);
-    for (size_t k = 1; k < kind->length; ++k) {
-      const unsigned next = static_cast<unsigned char>(text[i + k]);
-      if ((next & 0xc0) != 0x80) return false;
-      code = code << 6 | (next & 0x3f);
-    }
-    const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-    if (code < kind->least || code > 0x10ffff || is_surrogate) return false;
-    i += kind->length;
-  }
-  return true;
 }
 
 }  // namespace frond

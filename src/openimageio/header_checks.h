@@ -39,7 +39,4 @@ void check_header(const EncodedImage& file, std::string_view format);
 /// is no such entry.
 std::optional<uint64_t> tiff_number(std::string_view bytes, uint16_t tag);
 
-/// Returns whether the text is UTF-8 (RFC 3629).
-bool is_utf8(std::string_view text);
-
 }  // namespace frond

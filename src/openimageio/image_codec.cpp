@@ -16,6 +16,7 @@
 #include "openimageio/alpha.h"
 #include "openimageio/header_checks.h"
 #include "openimageio/webp.h"
+#include "system/utf8.h"
 
 namespace frond {
 namespace {
