@@ -6,11 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "core/math/vec.h"
 #include "imports/imported_loss.h"
 
 namespace frond {
 
 /// Scene of a model file (OBJ, glTF) as plain data: what the process that reads the file returns.
+
+inline Vec3d to_double(const std::array<float, 3>& v) { return {double(v[0]), double(v[1]), double(v[2])}; }
 
 /// Image that a material names: a file, or bytes that the model file contains.
 struct ImportedImage {

@@ -10,6 +10,15 @@ namespace frond {
 struct NodeMap {
   std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
+  /// Returns the map of a 4 x 4 matrix that is stored by columns, whose last row is 0 0 0 1.
+  template <class T>
+  static NodeMap of_columns(const T* columns) {
+    NodeMap map;
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 4; ++j) map.m[4 * i + j] = double(columns[4 * j + i]);
+    return map;
+  }
+
   Vec3d point(const Vec3d& p) const { return vector(p) + Vec3d{m[3], m[7], m[11]}; }
   Vec3d vector(const Vec3d& v) const {
     return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,

@@ -11,15 +11,13 @@
 namespace frond {
 namespace {
 
-Vec3d to_vec(const std::array<float, 3>& v) { return {double(v[0]), double(v[1]), double(v[2])}; }
-
 /// Adds a mesh under a map. A mirroring map keeps the front of a surface where it is in the mesh, as glTF and pbrt
 /// define: the order of the vertices is reversed.
 void append(PlantMesh& to, const ImportedMesh& mesh, const NodeMap& map) {
   const auto first = uint32_t(to.p.size());
-  for (const auto& p : mesh.positions) to.p.push_back(to_float(map.point(to_vec(p))));
+  for (const auto& p : mesh.positions) to.p.push_back(to_float(map.point(to_double(p))));
   for (const auto& n : mesh.normals) {
-    const Vec3d normal = map.normal(to_vec(n));
+    const Vec3d normal = map.normal(to_double(n));
     const double size = length(normal);
     to.n.push_back(size > 0 ? to_float(normal / size) : Vec3{0, 0, 1});
   }

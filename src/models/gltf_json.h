@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct GltfFile {
 /// Parses the JSON of a glTF file, or of its first chunk if the file is a .glb. Throws std::runtime_error for what is
 /// not JSON, for an object that has a key twice (readers differ in which one counts), and for a depth above 200.
 GltfFile parse_gltf(std::string_view file);
+
+/// Returns the place of an object in the JSON, for messages: "nodes[3]".
+inline std::string place_of(const char* array, uint64_t index) { return array + ("[" + std::to_string(index) + "]"); }
 
 // Access to untrusted JSON: values may have any type.
 

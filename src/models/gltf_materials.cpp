@@ -171,7 +171,6 @@ int32_t GltfMaterials::image_of(const Json& texture) {
   losses_.check("image", *image, &name_);
   const auto [known, is_new] = images_.try_emplace(*index, int32_t(scene_.images.size()));
   if (!is_new) return known->second;
-  const std::string place = "images[" + std::to_string(*index) + "]";
   const std::string_view uri = text(*image, "uri"), name = text(*image, "name");
   ImportedImage result{
       .name = name.empty() ? "image" + std::to_string(*index) : std::string(name), .bytes = {}, .extension = {}};
@@ -180,7 +179,7 @@ int32_t GltfMaterials::image_of(const Json& texture) {
     result.bytes.assign(data->second.begin(), data->second.end());
     if (type.empty()) type = data->first;
   } else if (const auto view = integer(*image, "bufferView")) {
-    const std::string_view bytes = data_.view(*view, place);
+    const std::string_view bytes = data_.view(*view, place_of("images", *index));
     result.bytes.assign(bytes.begin(), bytes.end());
   } else {
     result.name = data_.file_name(uri);

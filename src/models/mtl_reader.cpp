@@ -84,6 +84,7 @@ constexpr MapOption kOptions[] = {
     {"-blendu", 1, "on"},
     {"-blendv", 1, "on"},
     {"-cc", 1, "off"},
+    {"-colorspace", 1, "sRGB"},
     {"-texres", 1, "*"},
     {"-boost", 1, "0"},
     {"-bm", 1, "1"},

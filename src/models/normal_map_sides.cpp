@@ -18,8 +18,7 @@ Direction direction_of(const ImportedMesh& mesh, const std::array<uint32_t, 3>& 
     return double(mesh.uvs[t[corner]][axis]) - double(mesh.uvs[t[0]][axis]);
   };
   const auto edge = [&](size_t corner) {
-    const auto &p = mesh.positions[t[corner]], &origin = mesh.positions[t[0]];
-    return Vec3d{double(p[0]) - double(origin[0]), double(p[1]) - double(origin[1]), double(p[2]) - double(origin[2])};
+    return to_double(mesh.positions[t[corner]]) - to_double(mesh.positions[t[0]]);
   };
   const double area = uv(1, 0) * uv(2, 1) - uv(2, 0) * uv(1, 1);
   return {area, (area < 0 ? -1. : 1.) * (uv(2, 1) * edge(1) - uv(1, 1) * edge(2))};
@@ -72,7 +71,7 @@ bool add_by_side(ImportedMesh mesh, const std::vector<std::array<float, 4>>& tan
       if (!tangents.empty() && d.area != 0) {
         constexpr double kLeast = 0.5;  // cosine: vertices' tangents are means of several triangles'
         const auto& tangent = tangents[t[0]];
-        const Vec3d direction{double(tangent[0]), double(tangent[1]), double(tangent[2])};
+        const Vec3d direction = to_double(Vec3{tangent[0], tangent[1], tangent[2]});
         is_turned = is_turned || !(dot(direction, d.u) > kLeast * length(d.u) * length(direction));
         is_opposite = tangent[3] < 0;
       }

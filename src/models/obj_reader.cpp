@@ -10,14 +10,12 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <unordered_map>
 
-#include "core/math/precise_transform.h"
 #include "imports/node_map.h"
 #include "models/mtl_reader.h"
 #include "models/normal_map_sides.h"
+#include "models/obj_geometry.h"
 #include "models/obj_lines.h"
-#include "models/polygon.h"
 
 namespace frond {
 namespace {
@@ -59,44 +57,6 @@ constexpr std::string_view kInert[] = {"vp",   "cstype", "deg", "bmat",   "step"
 /// The material of faces without one.
 const std::string kDefault = "DefaultMaterial";
 
-/// Corner of a face: vertex, texture coordinates, normal; from 1, 0: none.
-using Corner = std::array<uint64_t, 3>;
-/// Hash of a corner: products with odd constants (of SplitMix64) mix the bits.
-struct CornerHash {
-  size_t operator()(const Corner& c) const {
-    return size_t(((c[0] * 0x9e3779b97f4a7c15) ^ c[1]) * 0xff51afd7ed558ccd ^ c[2]);
-  }
-};
-
-/// Faces of one object and material, with or without texture coordinates and normals.
-struct Faces {
-  std::vector<Corner> vertices = {};
-  std::unordered_map<Corner, uint32_t, CornerHash> index = {};
-  std::vector<uint32_t> corners = {}, sizes = {};  ///< of the faces: vertices, and how many each has
-};
-
-/// Returns the middle value, and sorts in part. There is at least one.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-/// Returns the point that the vertices are to be relative to: 0 unless all but a few are far.
-std::array<double, 3> origin_of(const std::vector<std::array<double, 3>>& vertices) {
-  constexpr double kFewNear = 0.01;
-  const auto far = [](const std::array<double, 3>& p) { return is_far({p[0], p[1], p[2]}); };
-  const auto near = vertices.size() - size_t(std::ranges::count_if(vertices, far));
-  if (vertices.empty() || double(near) >= kFewNear * double(vertices.size())) return {};
-  std::array<double, 3> origin{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    std::vector<double> values(vertices.size());
-    for (size_t i = 0; i < values.size(); ++i) values[i] = vertices[i][axis];
-    origin[axis] = std::round(median(std::move(values)));
-  }
-  return far(origin) ? origin : std::array<double, 3>{};
-}
-
 /// Reads the statements of an OBJ file one by one.
 class ObjReader {
  public:
@@ -115,8 +75,6 @@ class ObjReader {
   }
 
  private:
-  enum Kind : uint8_t { kVertex, kTexture, kNormal };
-
   /// Keywords of OBJ are in lower case.
   void statement(const ObjStatement& s) {
     split_words(s.rest, words_);
@@ -185,7 +143,7 @@ class ObjReader {
   }
 
   /// Returns the index, from 1, that a word of a face names; 0 if the file has no such element.
-  uint64_t index(const ObjStatement& s, std::string_view word, Kind kind) const {
+  uint64_t index(const ObjStatement& s, std::string_view word, ObjKind kind) const {
     if (word.starts_with('+')) word.remove_prefix(1);
     int64_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -196,12 +154,12 @@ class ObjReader {
   }
 
   /// Returns the indices of a word of a face: v, v/vt, v//vn or v/vt/vn.
-  Corner corner(const ObjStatement& s, std::string_view word) {
-    Corner corner{};
+  ObjCorner corner(const ObjStatement& s, std::string_view word) {
+    ObjCorner corner{};
     for (size_t kind = 0; kind < 3; ++kind) {
       const size_t end = std::min(word.find('/'), word.size());
       const std::string_view part = word.substr(0, end);
-      if (!part.empty()) corner[kind] = index(s, part, Kind(kind));
+      if (!part.empty()) corner[kind] = index(s, part, ObjKind(kind));
       if (kind == kVertex && corner[0] == 0)
         fail(s.line, "the face has vertex " + quoted(part) + ", which the file does not have");
       if (!part.empty() && corner[kind] == 0) lacking_[kind] = true;  // of an index that the file does not have
@@ -219,19 +177,19 @@ class ObjReader {
     if (corners_.size() < 3) return losses_.add("face of fewer than 3 corners" + first(kShort, s));
     std::array<bool, 3> has{};
     for (size_t kind = 1; kind < 3; ++kind) {
-      has[kind] = std::ranges::all_of(corners_, [kind](const Corner& c) { return c[kind] > 0; });
+      has[kind] = std::ranges::all_of(corners_, [kind](const ObjCorner& c) { return c[kind] > 0; });
       const char* what = kind == kTexture ? "texture coordinates (vt)" : "normals (vn)";
       if (lacking_[kind])
         losses_.add(std::string(what) + " that the file does not have" + first(kind, s));
-      else if (!has[kind] && std::ranges::any_of(corners_, [kind](const Corner& c) { return c[kind] > 0; }))
+      else if (!has[kind] && std::ranges::any_of(corners_, [kind](const ObjCorner& c) { return c[kind] > 0; }))
         losses_.add(std::string(what) + " at some corners of a face only" + first(kind, s));
     }
     if (is_smooth_ && !has[kNormal] && total_[kNormal] == 0 && !is_smooth_named_) {
       losses_.add("smoothing groups (s) without normals");
       is_smooth_named_ = true;
     }
-    Faces& faces = faces_[{object_index(), material_, has[kTexture], has[kNormal]}];
-    for (Corner c : corners_) {
+    ObjFaces& faces = faces_[{object_index(), material_, has[kTexture], has[kNormal]}];
+    for (ObjCorner c : corners_) {
       for (size_t kind = 1; kind < 3; ++kind) c[kind] = has[kind] ? c[kind] : 0;
       const auto [known, is_new] = faces.index.try_emplace(c, uint32_t(faces.vertices.size()));
       if (is_new) faces.vertices.push_back(c);
@@ -260,7 +218,7 @@ class ObjReader {
       if (std::ranges::find(libraries_, name) == libraries_.end()) libraries_.push_back(name);
     };
     const auto has = [this](std::string_view word) { return files_.has(std::string(word)); };
-    if (words_.size() > 1 && std::ranges::all_of(words_, has))
+    if (words_.size() > 1 && !has(s.rest) && std::ranges::any_of(words_, has))
       for (const std::string_view word : words_) add(std::string(word));
     else if (!s.rest.empty())
       add(std::string(s.rest));
@@ -303,40 +261,12 @@ class ObjReader {
 
   /// A mesh for each object and material: what its faces have is known at the end of the file.
   void add_meshes() {
-    scene_.origin = origin_of(values_[kVertex]);
+    scene_.origin = obj_origin(values_[kVertex]);
     for (const auto& [key, faces] : faces_) {
       const auto& [object, material, has_uv, has_normal] = key;
       ImportedMesh mesh{.name = scene_.nodes[object].name, .material = by_name_.at(material)};
-      const auto& m = scene_.materials[mesh.material].uv_texture().to_image;
-      for (const Corner& c : faces.vertices) {
-        const auto& p = values_[kVertex][c[kVertex] - 1];
-        mesh.positions.push_back(
-            {float(p[0] - scene_.origin[0]), float(p[1] - scene_.origin[1]), float(p[2] - scene_.origin[2])});
-        if (has_uv) {
-          const auto& uv = values_[kTexture][c[kTexture] - 1];
-          mesh.uvs.push_back({float(double(m[0]) * uv[0] + double(m[2])), float(double(m[4]) * uv[1] + double(m[5]))});
-        }
-        if (!has_normal) continue;
-        const auto& n = values_[kNormal][c[kNormal] - 1];
-        mesh.normals.push_back({float(n[0]), float(n[1]), float(n[2])});
-      }
-      add_triangles(faces, mesh);
+      add_geometry(faces, values_, has_uv, has_normal, scene_, mesh);
       add_by_side(std::move(mesh), {}, scene_, scene_.nodes[object].meshes);
-    }
-  }
-
-  /// Divides the faces. Their corners may follow them in the file, so that this is done at its end.
-  static void add_triangles(const Faces& faces, ImportedMesh& mesh) {
-    const uint32_t* corner = faces.corners.data();
-    std::vector<Vec3d> points;
-    for (const uint32_t size : faces.sizes) {
-      points.clear();
-      for (uint32_t k = 0; k < size; ++k) {
-        const auto& p = mesh.positions[corner[k]];
-        points.push_back({double(p[0]), double(p[1]), double(p[2])});
-      }
-      for (const auto& [a, b, c] : triangulated(points)) mesh.triangles.push_back({corner[a], corner[b], corner[c]});
-      corner += size;
     }
   }
 
@@ -348,15 +278,15 @@ class ObjReader {
   FileSource& files_;
   ImportedScene scene_;
   LossList losses_;
-  std::array<uint64_t, 3> total_{};                           ///< elements of the file
-  std::array<std::vector<std::array<double, 3>>, 3> values_;  ///< elements up to here
-  std::array<bool, 3> lacking_{};                             ///< kinds that a face names and the file does not have
-  std::array<size_t, 3> first_{};                             ///< lines of the first losses of faces
-  std::vector<std::string> libraries_;                        ///< names of material files
+  std::array<uint64_t, 3> total_{};     ///< elements of the file
+  ObjElements values_;                  ///< up to here
+  std::array<bool, 3> lacking_{};       ///< kinds that a face names and the file does not have
+  std::array<size_t, 3> first_{};       ///< lines of the first losses of faces
+  std::vector<std::string> libraries_;  ///< names of material files
   std::vector<std::string_view> words_;
-  std::vector<Corner> corners_;
+  std::vector<ObjCorner> corners_;
   std::string object_, material_ = kDefault;
-  std::map<Key, Faces> faces_;
+  std::map<Key, ObjFaces> faces_;
   std::map<std::string, uint32_t> objects_, by_name_;  ///< nodes; materials
   std::set<std::string> used_;                         ///< names of materials
   bool is_smooth_ = false, is_smooth_named_ = false, has_colors_ = false, is_color_named_ = false;

@@ -117,6 +117,7 @@ TEST(ObjReader, MaterialFiles) {
   EXPECT_EQ(color("mtllib a b.mtl\nmtllib c.mtl\n", 0), (P{0, 1, 0}));
   EXPECT_EQ(color("mtllib c.mtl model.mtl\n", 0), (P{0, 0, 1}));
   EXPECT_EQ(color("mtllib missing.mtl\n", 1), (P{0, 0, 1}));
+  EXPECT_EQ(color("mtllib missing.mtl model.mtl c.mtl\n", 1), (P{0, 1, 0}));
   EXPECT_THAT(losses_of_obj(kMaterial + "usemtl unused\n", "newmtl n\n"),
               ElementsAre("colour, which no material file states, of \"m\""));
   EXPECT_THAT(losses_of_obj(kMaterial, "newmtl m\nnewmtl n\nKs 1 1 1\n"), IsEmpty());
@@ -125,7 +126,7 @@ TEST(ObjReader, MaterialFiles) {
 TEST(MtlReader, StatementsThatAreRead) {
   const ImportedScene scene =
       read_obj(kMaterial,
-               "newmtl m\nKd .5\nTr .25\nMAP_KD -clamp on -s 10 5 1 -o .1 .2 0 a b.png\nmap_d "
+               "newmtl m\nKd .5\nTr .25\nMAP_KD -clamp on -colorspace sRGB -s 10 5 1 -o .1 .2 0 a b.png\nmap_d "
                "-imfchan m a.png\nnorm -bm 0.5 n.png\n"
                "illum 2\nKa 1 1 1\nNs 100\nNi 1.45\nKs 0 0 0\nKe 0 0 0\nTf 1 1 1\nPr 1\nPm 0\n");
   const ImportedMaterial& m = scene.materials[0];
