@@ -1,10 +1,12 @@
 """The leaf benchmark: error against CPU time of leaf materials in several programs (docs/leaf_benchmark.md)
 
 Runs entries on tasks, and writes results/ENTRY.json, results/results.csv and, unless only some entries or samples were asked for, the
-sections of docs/leaf_benchmark.md. Results of other tasks and entries stay.
+sections of docs/leaf_benchmark.md. Results of other tasks, entries and numbers of samples stay.
   --task TASK       only this task; repeatable
   --entry ENTRY     only this entry: a folder of leaf_benchmark/entries, or the path of another folder; repeatable
-  --samples N,N     samples per pixel of the images; default: 1,8,64
+  --samples N,N     samples per pixel of the images, by default 1,8,64; paths of a view of the canopy, by default 1024,16384
+  --core N          reserves this core for the entries: real-time priority, which needs root
+  --again           a second run with other seeds, which is stored beside the first
   --out FOLDER      writes the results there, and no page
   --page            runs nothing: writes the table and the page from the results
 """
@@ -27,12 +29,10 @@ from .programs.interface import Task
 
 HERE = pathlib.Path(__file__).parent
 TASKS = ["front", "back", "ambient", "glow", "leaf", "canopy"]
-SAMPLES = [1, 8, 64]
-LEAF_SAMPLES = 64
-PATHS = [1024, 16384]  # of a view of the canopy
-SEEDS = (1, 2)
-# Entries in Python find this one, with the packages of leaf_benchmark/run, and this folder.
-ENVIRONMENT = os.environ | {"PATH": f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}",
+SAMPLES = {"image": [1, 8, 64], "leaf": [64], "canopy": [1024, 16384]}  # by kind of task
+MISSING = 127  # exit status of an entry whose program is not installed
+# Entries in Python find this one and that of Eradiate, with the packages of leaf_benchmark/run, and this folder.
+ENVIRONMENT = os.environ | {"PATH": f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}:{HERE.parent / 'build' / 'eradiate-venv' / 'bin'}",
                             "PYTHONPATH": f"{HERE.parent}:{os.environ.get('PYTHONPATH', '')}", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
@@ -48,13 +48,17 @@ def tasks():
     return {name: Task(HERE / "tasks" / name) for name in TASKS if (HERE / "tasks" / name / "task.json").exists()}
 
 
-def run(entry, task, samples, seed, out):
+def run(entry, task, samples, seed, out, core=None):
     """What the entry prints: its CPU seconds, set-up and versions."""
-    done = subprocess.run([entry / "entry", task.folder, str(samples), str(seed), str(out)], capture_output=True, text=True, check=False,
-                          env=ENVIRONMENT)
+    words = [entry / "entry", task.folder, samples, seed, out]
+    if core is not None:  # round robin, because threads of one program may wait for each other
+        words = ["chrt", "--rr", 10, "taskset", "--cpu-list", core, *words]
+    done = subprocess.run(list(map(str, words)), capture_output=True, text=True, check=False, env=ENVIRONMENT)
     lines = [line for line in done.stderr.splitlines() if line.strip()]
     if done.returncode and lines and lines[-1].startswith("cannot: "):
         raise Cannot(lines[-1].removeprefix("cannot: "))
+    if done.returncode == MISSING:
+        raise FileNotFoundError(lines[-1])
     if done.returncode:
         raise SystemExit(f"{entry.name} {task.name} ended with {done.returncode}:\n{done.stderr}")
     return json.loads(done.stdout.strip().splitlines()[-1])
@@ -65,56 +69,57 @@ def written(out):
     return next(path for path in (out, out.with_suffix(".npy")) if path.exists())
 
 
-def image_result(entry, task, folder, numbers):
+def points_of(entry, task, folder, options, read, measured):
+    """A result with a point for each number of samples, from renders with two seeds. Other measures are those of the last number."""
+    points = []
+    for samples in options.samples or SAMPLES[task.kind]:
+        outs = [folder / f"{samples}-{seed}.{'exr' if task.kind == 'image' else 'csv'}" for seed in options.seeds]
+        took = [run(entry, task, samples, seed, out, options.core) for seed, out in zip(options.seeds, outs)]
+        found = measured([read(written(out)) for out in outs])
+        points.append({"samples": samples, "cpu_s": min(t["cpu_s"] for t in took), "rms": found.pop("rms"),
+                       "core": "shared" if options.core is None else "reserved"})
+    return {"points": points, "setup_s": min(t["setup_s"] for t in took), **found}, took[0]["versions"]
+
+
+def image_result(entry, task, folder, options):
     from .truth import make as truth  # needs frond
     halves, leaf = truth.halves(task)
-    points = []
-    for samples in numbers:
-        took, images = [], []
-        for seed in SEEDS:
-            out = folder / f"{samples}-{seed}.exr"
-            took.append(run(entry, task, samples, seed, out))
-            images.append(truth.colors(written(out)))
-        found = measures.of_images(images, halves, leaf)
-        points.append({"samples": samples, "cpu_s": min(t["cpu_s"] for t in took), "rms": found.pop("rms")})
-    return {"points": points, "setup_s": min(t["setup_s"] for t in took), **found}, took[0]["versions"]
+    return points_of(entry, task, folder, options, truth.colors, lambda images: measures.of_images(images, halves, leaf))
 
 
-def leaf_result(entry, task, folder, _):
-    from .truth import make as truth
-    out = folder / "table.csv"
-    took = run(entry, task, LEAF_SAMPLES, SEEDS[0], out)
-    rows, [true] = measures.read_table(out), truth.files(task)
-    return {"cpu_s": took["cpu_s"], "errors": measures.of_table(rows, measures.read_table(true)),
-            "checks": checks.check(rows, task.leaf)}, took["versions"]
-
-
-def canopy_result(entry, task, folder, _):
+def canopy_result(entry, task, folder, options):
     from .truth import make as truth
     read = lambda path: numpy.loadtxt(path, delimiter=",", skiprows=1)
-    halves, points = [read(path) for path in truth.files(task)], []
-    for samples in PATHS:
-        outs = [folder / f"{samples}-{seed}.csv" for seed in SEEDS]
-        took = [run(entry, task, samples, seed, out) for seed, out in zip(SEEDS, outs)]
-        found = measures.of_brf([read(out) for out in outs], halves, task.wavelengths_nm)
-        points.append({"samples": samples, "cpu_s": min(t["cpu_s"] for t in took), "rms": found.pop("rms")})
-    return {"points": points, "setup_s": min(t["setup_s"] for t in took), **found}, took[0]["versions"]
+    halves = [read(path) for path in truth.files(task)]
+    return points_of(entry, task, folder, options, read, lambda tables: measures.of_brf(tables, halves, task.wavelengths_nm, len(task.view_zenith)))
+
+
+def leaf_result(entry, task, folder, options):
+    from .truth import make as truth
+    out, [true] = folder / "table.csv", truth.files(task)
+    took = run(entry, task, SAMPLES["leaf"][0], options.seeds[0], out, options.core)
+    rows = measures.read_table(out)
+    return {"cpu_s": took["cpu_s"], "errors": measures.of_table(rows, measures.read_table(true)),
+            "checks": checks.check(rows, task.leaf)}, took["versions"]
 
 
 RESULTS = {"image": image_result, "leaf": leaf_result, "canopy": canopy_result}
 
 
-def measure(entry, of, numbers, out):
+def measure(entry, of, options):
     """Runs an entry on tasks, and keeps each task's result, or the reason why there is none."""
     for task in of:
         versions = {}
         with tempfile.TemporaryDirectory(prefix="leaf_benchmark.", dir=os.environ.get("TMPDIR")) as temporary:
             try:
-                result, versions = RESULTS[task.kind](entry, task, pathlib.Path(temporary), numbers)
+                result, versions = RESULTS[task.kind](entry, task, pathlib.Path(temporary), options)
             except Cannot as reason:
                 result = {"cannot": str(reason)}
+            except FileNotFoundError as reason:
+                print(f"{entry.name} left out: {reason}", flush=True)
+                return
         print(entry.name, task.name, brief(result), flush=True)
-        keep(out, entry.name, {task.name: result}, versions)
+        keep(options.out or HERE / "results", entry.name, task.name, result, versions, options.again)
 
 
 def brief(result):
@@ -127,15 +132,27 @@ def brief(result):
     return f"{result.get('errors', '')}; " + ("checks passed" if not failed else "failed: " + "; ".join(failed))
 
 
-def keep(folder, name, results, versions):
-    """Merges results into those of record."""
+def keep(folder, name, task, result, versions, again):
+    """Merges a result into those of record."""
     path = folder / f"{name}.json"
     known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"entry": name, "versions": {}, "tasks": {}}
-    about = {"machine": machine(), "date": datetime.date.today().isoformat(), "load": max(os.getloadavg())}
     known["versions"] |= versions
-    known["tasks"] |= {task: result | about for task, result in results.items()}
+    before = known["tasks"].setdefault(task, {})
+    if again:
+        before["again"] = {"points": result["points"], "bias": result["bias"]["all"]}
+    else:
+        known["tasks"][task] = merged(before, result | {"machine": machine(), "date": datetime.date.today().isoformat(), "load": max(os.getloadavg())})
     folder.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(rounded(known), indent=1) + "\n", encoding="utf-8")
+
+
+def merged(before, result):
+    """A result with the points of an earlier one; measures are those of the render with the most samples."""
+    if not (before.get("points") and result.get("points")):
+        return result
+    points = {point["samples"]: point for point in [*before["points"], *result["points"]]}
+    last = max((before, result), key=lambda r: (r["points"][-1]["samples"], r is result))
+    return last | {"points": [points[n] for n in sorted(points)]}
 
 
 def rounded(value):
@@ -150,15 +167,18 @@ def main():
     parser = argparse.ArgumentParser(prog="leaf_benchmark/run")
     parser.add_argument("--task", action="append", choices=TASKS)
     parser.add_argument("--entry", action="append")
-    parser.add_argument("--samples", type=lambda text: [int(n) for n in text.split(",")], default=SAMPLES)
+    parser.add_argument("--samples", type=lambda text: [int(n) for n in text.split(",")])
+    parser.add_argument("--core", type=int)
+    parser.add_argument("--again", action="store_true")
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("--page", action="store_true")
     options = parser.parse_args()
+    options.seeds = (3, 4) if options.again else (1, 2)
     of = [task for name, task in tasks().items() if name in (options.task or TASKS)]
     if not options.page:
         chosen = [path if path.is_dir() else HERE / "entries" / path for path in map(pathlib.Path, options.entry)] if options.entry else entries()
         for entry in chosen:
-            measure(entry.resolve(), of, options.samples, options.out or HERE / "results")
+            measure(entry.resolve(), of, options)
     if not options.out:
         from . import page
         page.write_all()

@@ -3,6 +3,8 @@
 import numpy
 import pandas
 
+from .programs.interface import COLUMNS
+
 BLOCK = 4  # pixels, of local errors
 
 
@@ -46,15 +48,18 @@ def of_images(images, halves, leaf):
             "largest": float(abs(blocks(mean - truth, leaf)).max()), "flip": flip(mean, truth), "mean": float((mean - truth)[leaf].mean())}
 
 
-def of_brf(values, halves, nm):
-    """Relative to the truth's mean of each wavelength, over the views: RMS error of one measurement; bias by wavelength and of all; error
-    of the mean over the views."""
-    scale = numpy.mean(halves, axis=(0, 1))
-    values, halves = numpy.array(values) / scale, numpy.array(halves) / scale
-    whole = numpy.ones(values.shape[1], bool)
-    return {"rms": root(squared(values, halves).mean()),
-            "bias": {str(w): bias(values[..., i], halves[..., i], whole) for i, w in enumerate(nm)} | {"all": bias(values, halves, whole)},
-            "mean": {str(w): float((values - halves)[..., i].mean()) for i, w in enumerate(nm)}}
+def of_brf(values, halves, nm, views):
+    """Relative to the truth's mean of each wavelength, over the views: RMS error of one measurement; noise, from the difference of two;
+    bias by wavelength and of all; error of the mean over the views. If there is a row beyond the views: relative error of absorbed light."""
+    result = {"absorbed": dict(zip(map(str, nm), (numpy.mean(values, axis=0)[views] / numpy.mean(halves, axis=0)[views] - 1).tolist()))} \
+        if len(values[0]) > views else {}
+    values, halves = (numpy.array([table[:views] for table in of]) for of in (values, halves))
+    scale, whole = halves.mean(axis=(0, 1)), numpy.ones(views, bool)
+    values, halves = values / scale, halves / scale
+    return result | {
+        "rms": root(squared(values, halves).mean()), "noise": root(((values[0] - values[1])**2).mean() / 2),
+        "bias": {str(w): bias(values[..., i], halves[..., i], whole) for i, w in enumerate(nm)} | {"all": bias(values, halves, whole)},
+        "mean": {str(w): float((values - halves)[..., i].mean()) for i, w in enumerate(nm)}}
 
 
 def flip(image, truth):
@@ -98,6 +103,12 @@ def colors(rows):
 
 def ours_of(rows, quantity):
     return rows[rows.quantity == quantity].sort_values("theta")
+
+
+def frame(rows):
+    """A table as read from a file."""
+    rows = pandas.DataFrame(list(rows), columns=COLUMNS)
+    return rows.apply(pandas.to_numeric, errors="coerce").assign(quantity=rows.quantity)
 
 
 def read_table(path):

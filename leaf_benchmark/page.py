@@ -1,7 +1,9 @@
 """Writes results/results.csv and the measured sections and charts of docs/leaf_benchmark.md from the results of record."""
 
+import itertools
 import json
 import pathlib
+import statistics
 
 import pandas
 
@@ -15,6 +17,8 @@ IMAGES = ["front", "back", "ambient", "glow"]
 CHARTED = IMAGES[:2]
 WANTED = [0.02, 0.01]  # RMS errors of the columns "CPU s"
 COLORS = ("red", "green", "blue")
+LAMBERTIAN = ("frond_leaf_lambert", "mitsuba_lambert", "cycles_translucent", "pbrt_diffusetransmission", "radiance_lambert", "less3d_lambert",
+              "eradiate_bilambertian")
 
 
 def results():
@@ -28,6 +32,10 @@ def results():
     return found
 
 
+def task_json(name):
+    return json.loads((HERE / "tasks" / name / "task.json").read_text(encoding="utf-8"))
+
+
 def figure(value):
     return f"{value:.4f}" if value < 0.1 else f"{value:.3f}"
 
@@ -37,115 +45,147 @@ def bias_text(bias):
     return figure(value) if low > 0.8 * value else f"≤ {figure(high)}"
 
 
+def percent(bias):
+    return f"{100 * bias[0]:.0f} %" if bias[1] > 0.5 * bias[0] else f"≤ {100 * bias[2]:.1f} %"
+
+
 def seconds(points, bias, wanted):
     found = measures.time_to(points, bias, wanted)
     return "–" if found is None else f"{found:.2g}" if found < 9.5 else f"{found:.0f}"
 
 
-def image_rows(of, task):
-    """Rows of an image task, by program and error."""
+def ranked(of, task, head, cells):
+    """The table of a task: a row for each entry, by error; `cells` of a result. An entry that cannot do it has the reason."""
     rows = []
     for entry in of.values():
-        result = entry["tasks"].get(task)
+        result, name = entry["tasks"].get(task), [entry["program"], entry["material"]]
         if result and "cannot" in result:
-            rows.append((9, [entry["program"], entry["material"], result["cannot"], *[""] * (6 + len(WANTED))]))
+            if task != "canopy" or result["cannot"] != "measures no BRF":
+                rows.append((9, [*name, result["cannot"], *[""] * (len(head) - 1)]))
         elif result:
-            bias, points = result["bias"], result["points"]
-            rows.append((bias["all"][0], [entry["program"], entry["material"], bias_text(bias["all"]), *(bias_text(bias[c]) for c in COLORS),
-                         figure(result["median"]), figure(result["largest"]), figure(result["flip"]),
-                         *(seconds(points, bias["all"][0], w) for w in WANTED)]))
-    return [row for _, row in sorted(rows, key=lambda pair: pair[0])]
+            rows.append((result["bias"]["all"][0], [*name, *cells(result)]))
+    return table(["program", "leaf", *head], [row for _, row in sorted(rows, key=lambda pair: pair[0])])
 
 
 def image_table(of, task):
-    head = ["program", "leaf", "bias", *COLORS, "median", "largest", "FLIP", *(f"CPU s to {w:g}" for w in WANTED)]
-    return table(head, image_rows(of, task))
-
-
-def percent(value):
-    return f"{100 * value:+.1f} %"
+    return ranked(of, task, ["bias", *COLORS, "median", "largest", "FLIP", *(f"CPU s to {w:g}" for w in WANTED)], lambda result: [
+        *(bias_text(result["bias"][c]) for c in ("all", *COLORS)), *(figure(result[name]) for name in ("median", "largest", "flip")),
+        *(seconds(result["points"], result["bias"]["all"][0], w) for w in WANTED)])
 
 
 def canopy_table(of):
     """Bias of the BRF in per cent of the mean of each wavelength: RMS over the views, and of the mean over the views."""
-    rows, nm = [], json.loads((HERE / "tasks" / "canopy" / "task.json").read_text(encoding="utf-8"))["wavelengths_nm"]
-    for entry in of.values():
-        result = entry["tasks"].get("canopy")
-        if result and "cannot" in result:
-            rows.append((9, [entry["program"], entry["material"], result["cannot"], *[""] * (len(nm) + 1)]))
-        elif result:
-            bias, last = result["bias"], result["points"][-1]
-            text = lambda b: f"{100 * b[0]:.0f} %" if b[1] > 0.5 * b[0] else f"≤ {100 * b[2]:.1f} %"
-            rows.append((bias["all"][0], [entry["program"], entry["material"], text(bias["all"]),
-                         *(f"{text(bias[str(w)])}, {percent(result['mean'][str(w)])}" for w in nm),
-                         f"{1e6 * last['cpu_s'] / last['samples'] / 7:.1f} µs"]))
-    return table(["program", "leaf", "bias of BRF", *(f"{w} nm: bias, mean" for w in nm), "CPU of a path"],
-                 [row for _, row in sorted(rows, key=lambda pair: pair[0])])
+    nm = [str(w) for w in task_json("canopy")["wavelengths_nm"]]
 
-
-def checks_of(entry):
-    result = entry["tasks"].get("leaf", {})
-    if "checks" not in result:
-        return result.get("cannot", "not measured")
-    failed = [f"{c['check']} {c['value']:.3f} (limit {c['limit']:.3f})" for c in result["checks"] if not c["passed"]]
-    return "; ".join(failed) or "passed"
+    def cells(result):
+        last, absorbed = result["points"][-1], result.get("absorbed")
+        return [percent(result["bias"]["all"]), *(f"{percent(result['bias'][w])}, {100 * result['mean'][w]:+.1f} %" for w in nm),
+                ", ".join(f"{100 * absorbed[w]:+.1f}" for w in nm) if absorbed else "–",
+                f"{last['cpu_s'] * (result['noise'] / 0.01)**2:.2g}" if "noise" in result else ""]
+    return ranked(of, "canopy", ["bias of BRF", *(f"{w} nm: bias, mean" for w in nm), f"absorbed at {', '.join(nm)} nm, %", "CPU s to 1 %"], cells)
 
 
 def leaf_table(of):
     rows = []
     for entry in of.values():
-        errors = entry["tasks"].get("leaf", {}).get("errors")
-        rows.append([entry["program"], entry["material"], *([figure(errors[k]) for k in ("reflected", "transmitted", "R", "T")] if errors
-                    else [""] * 4), checks_of(entry)])
+        result = entry["tasks"].get("leaf", {})
+        if "errors" in result:
+            failed = [f"{c['check']} {c['value']:.3f} (limit {c['limit']:.3f})" for c in result["checks"] if not c["passed"]]
+            rows.append([entry["program"], entry["material"], *(figure(result["errors"][k]) for k in ("reflected", "transmitted", "R", "T")),
+                         "; ".join(failed) or "passed"])
     return table(["program", "leaf", "RMS π Δf, reflected", "transmitted", "largest ΔR", "ΔT", "checks"], rows)
+
+
+def bias(entry, task):
+    return entry["tasks"].get(task, {}).get("bias", {}).get("all")
+
+
+def cost(entry, task):
+    """CPU microseconds of a path, of the image or of a view."""
+    points = entry["tasks"].get(task, {}).get("points")
+    if not points:
+        return "–"
+    about = task_json(task)
+    value = 1e6 * points[-1]["cpu_s"] / points[-1]["samples"] / (about.get("width", 1) * about.get("height", len(about.get("view_zenith", [1]))))
+    return f"{value:.{0 if value > 9.5 else 1}f}"
 
 
 def choice(of):
     """For each program: the leaf that it has by itself, and the one with the least error, with what both cost."""
-    rows = []
-    programs = dict.fromkeys(entry["program"] for entry in of.values())
-    for program in programs:
-        able = [e for e in of.values() if e["program"] == program and all("bias" in e["tasks"].get(t, {}) for t in CHARTED)]
-        if not able:
-            continue
-        error = lambda e: sum(e["tasks"][t]["bias"]["all"][0] for t in CHARTED)
-        words = lambda e: [e["material"], *(bias_text(e["tasks"][t]["bias"]["all"]) for t in CHARTED), f"{cost(e):.{0 if cost(e) > 9.5 else 1}f}"]
-        own = [e for e in able if "frond" not in e["material"] and not e["material"].startswith("`leaf_s")]
-        usual, best = min(own or able, key=error), min(able, key=error)
-        rows.append([program, *words(usual), *(words(best) if best is not usual else ["–"] * 4)])
-    return table(["renderer", "its own leaf", *(f"error, {t}" for t in CHARTED), "CPU, µs", "better", *(f"error, {t}" for t in CHARTED),
-                  "CPU, µs"], rows)
+    rows, error = [], lambda e: sum(bias(e, t)[0] for t in (*CHARTED, "canopy") if bias(e, t))
+    for program in dict.fromkeys(entry["program"] for entry in of.values()):
+        able = [e for e in of.values() if e["program"] == program and (bias(e, "front") or bias(e, "canopy"))]
+        own = [e for e in able if "frond" not in e["material"] and not e["material"].startswith(("`leaf`", "`leaf_s", "`abm`"))] or able
+        usual, best = min(own, key=error), min(able, key=error)
+        for e, name in ((usual, program), (best, "")) if best is not usual else ((usual, program),):
+            rows.append([name, e["material"], *(bias_text(bias(e, t)) if bias(e, t) else "–" for t in IMAGES),
+                         percent(bias(e, "canopy")) if bias(e, "canopy") else "–", cost(e, "front"), cost(e, "canopy")])
+    return table(["renderer", "leaf", *IMAGES, "canopy, BRF", "CPU of a path, µs", "canopy"], rows)
 
 
-def cost(entry):
-    """CPU microseconds of a path of `front`."""
-    task = json.loads((HERE / "tasks" / "front" / "task.json").read_text(encoding="utf-8"))
-    last = entry["tasks"]["front"]["points"][-1]
-    return 1e6 * last["cpu_s"] / last["samples"] / task["width"] / task["height"]
+def answer(of):
+    """The first sentences: the range of the errors of Lambertian leaves, and what the best leaf of Mitsuba costs."""
+    plain, best = of["mitsuba_lambert"], of["mitsuba_frond_leaf"]
+    images, canopies = ([bias(of[e], t)[0] for e in LAMBERTIAN for t in tasks if bias(of[e], t)] for tasks in (IMAGES, ["canopy"]))
+    more = float(cost(best, "front")) / float(cost(plain, "front"))
+    return (f"**Which leaf?** A Lambertian leaf with the right R and T, the leaf that most programs have, is wrong by {min(images):.3f} to {max(images):.3f} of "
+            f"white in images, RMS, and by {100 * min(canopies):.0f} % to {100 * max(canopies):.0f} % in the BRF of a canopy. Take frond's leaf where your "
+            f"renderer can load it: in Mitsuba 3 its error is {bias_text(bias(best, 'front'))} in `front`, and a path costs {more:.1f} times as much as with a "
+            "Lambertian leaf. The table has, for each renderer, its own leaf with the least error, and below it the best one by frond:\n")
+
+
+def repeated(of):
+    """The second run beside the first: `[same order, pairs]` by bias and by CPU time of those that are apart; relative differences of CPU."""
+    counts, changes, runs = {"bias": [0, 0], "CPU": [0, 0]}, [], {task: [] for task in CHARTED}
+    for task, entry in itertools.product(CHARTED, of.values()):
+        result = entry["tasks"].get(task, {})
+        if "again" in result:
+            again, last = result["again"], result["again"]["points"][-1]
+            cpu = next(p["cpu_s"] for p in result["points"] if p["samples"] == last["samples"]), last["cpu_s"]
+            whole = last["samples"] == result["points"][-1]["samples"]  # the bias of fewer samples is another estimate
+            runs[task].append((result["bias"]["all"] if whole else None, again["bias"], last["samples"], *cpu))
+            changes.append(abs(cpu[1] / cpu[0] - 1))
+    for a, b in itertools.chain.from_iterable(itertools.combinations(of_task, 2) for of_task in runs.values()):
+        if a[0] and b[0] and (a[0][2] < b[0][1] or b[0][2] < a[0][1]):
+            counts["bias"] = [counts["bias"][0] + ((a[0][0] < b[0][0]) == (a[1][0] < b[1][0])), counts["bias"][1] + 1]
+        if a[2] == b[2] and max(a[3] / b[3], b[3] / a[3]) > 1 + 2 * max(changes):
+            counts["CPU"] = [counts["CPU"][0] + ((a[3] < b[3]) == (a[4] < b[4])), counts["CPU"][1] + 1]
+    return counts, changes
 
 
 def about(of):
-    dates = sorted({r["date"] for e in of.values() for r in e["tasks"].values()})
+    every = [r for e in of.values() for r in e["tasks"].values() if "points" in r]
+    dates, machines = (sorted({key(r) for r in every}) for key in (lambda r: r["date"], lambda r: r["machine"].split(";")[0]))
     versions = dict(sorted(v for e in of.values() for v in e["versions"].items()))
-    machines = sorted({r["machine"].split(";")[0] for e in of.values() for r in e["tasks"].values()})
-    load = max(r.get("load", 0) for e in of.values() for r in e["tasks"].values())
-    return (f"Measured by `leaf_benchmark/run` on {', '.join(machines)}, {' to '.join(dict.fromkeys([dates[0], dates[-1]]))}, maximum machine "
-            f"load {load:.0f}: {', '.join(f'{name} {number}' for name, number in versions.items())}. CPU is that of a path of `front`.\n")
+    shared = sorted({f"{e['program']} with {p['samples']} samples in `{t}`" for e in of.values() for t, r in e["tasks"].items()
+                     for p in r.get("points", []) if p.get("core") != "reserved"})
+    counts, changes = repeated(of)
+    text = (f"Measured by `leaf_benchmark/run` on {', '.join(machines)}, {' to '.join(dict.fromkeys([dates[0], dates[-1]]))}: "
+            f"{', '.join(f'{name} {number}' for name, number in versions.items())}. Each entry ran on one core that was reserved by real-time "
+            "priority (`--core`); the machine's other core had other work.")
+    if shared:
+        text += f" Not on a reserved core: {', '.join(shared)}."
+    if changes:
+        text += (f" A second cold run of the charted entries with other seeds has the same order by error in {counts['bias'][0]} of {counts['bias'][1]} pairs "
+                 f"whose 95 % intervals are apart; CPU times differ by {100 * statistics.median(changes):.0f} % (median; at most {100 * max(changes):.0f} %), and "
+                 f"{counts['CPU'][0]} of {counts['CPU'][1]} pairs that are further apart than twice the latter have the same order.")
+    return text + "\n"
 
 
 def write_csv(of):
     rows = []
     for name, entry in of.items():
         for task, result in entry["tasks"].items():
+            row = lambda quantity, **more: rows.append({"entry": name, "task": task, "quantity": quantity, **more})
             for point in result.get("points", []):
-                rows.append({"entry": name, "task": task, "quantity": "rms", **point, "value": point["rms"]})
+                row("rms", samples=point["samples"], cpu_s=point["cpu_s"], value=point["rms"])
             for color, (value, low, high) in result.get("bias", {}).items():
-                rows.append({"entry": name, "task": task, "quantity": f"bias {color}", "value": value, "low": low, "high": high})
-            for quantity in ("median", "largest", "flip", "setup_s", "cpu_s"):
+                row(f"bias {color}", value=value, low=low, high=high)
+            for quantity in ("median", "largest", "flip", "noise", "setup_s", "cpu_s"):
                 if quantity in result:
-                    rows.append({"entry": name, "task": task, "quantity": quantity, "value": result[quantity]})
+                    row(quantity, value=result[quantity])
             for check in result.get("checks", []):
-                rows.append({"entry": name, "task": task, "quantity": f"check {check['check']}", "value": check["value"], "high": check["limit"]})
+                row(f"check {check['check']}", value=check["value"], high=check["limit"])
     columns = ["task", "entry", "quantity", "samples", "cpu_s", "value", "low", "high"]
     pandas.DataFrame(rows)[columns].sort_values(["task", "entry"], kind="stable").to_csv(
         HERE / "results" / "results.csv", index=False, float_format="%.4g")
@@ -153,9 +193,8 @@ def write_csv(of):
 
 def draw(of):
     from measurements.shared import charts
-    width, height = 1000, 620
-    drawn, panels = charts.figure(width, height, 1, len(CHARTED), sharey=True)
-    color = dict(zip(dict.fromkeys(e["program"] for e in of.values()), charts.COLORS[1:] + charts.COLORS[:1]))
+    drawn, panels = charts.figure(1000, 620, 1, len(CHARTED), sharey=True)
+    color = dict(zip(dict.fromkeys(e["program"] for e in of.values() if bias(e, "front")), charts.COLORS[1:] + charts.COLORS[:1]))
     for panel, task in zip(panels[0], CHARTED):
         marks = {}
         for entry in of.values():
@@ -173,8 +212,9 @@ def draw(of):
 
 def sections(of):
     """The measured sections of the page."""
-    images = "\n".join(f"#### `{task}`\n\n{image_table(of, task)}" for task in IMAGES if any(task in e["tasks"] for e in of.values()))
-    return {"leaf_benchmark_choice": f"{choice(of)}\n{about(of)}", "leaf_benchmark": f"{images}\n#### `canopy`\n\n{canopy_table(of)}\n#### `leaf`, and checks\n\n{leaf_table(of)}"}
+    images = "\n".join(f"#### `{task}`\n\n{image_table(of, task)}" for task in IMAGES)
+    return {"leaf_benchmark_choice": f"{answer(of)}\n{choice(of)}\n{about(of)}",
+            "leaf_benchmark": f"{images}\n#### `canopy`\n\n{canopy_table(of)}\n#### `leaf`, and checks\n\n{leaf_table(of)}"}
 
 
 def page(text, of):

@@ -107,6 +107,11 @@ with_python_module() {
   configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
 }
 
+# Environments of the leaf benchmark; Eradiate brings a Mitsuba of its own.
+benchmark_packages=(mitsuba==3.9.1 bpy==5.0.1 pyradiance==1.3.1 less3d==3.0.1 flip-evaluator==1.7 nanobind-backend==1.0.0 numpy==1.26.4 pandas
+  scipy==1.17.1 matplotlib==3.11.2)
+eradiate_packages=("eradiate[kernel]==1.2.0" nanobind-backend==1.0.0 pandas matplotlib==3.11.2)
+
 # Without these values ccache does not cache sources that include a precompiled header.
 export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros"
 

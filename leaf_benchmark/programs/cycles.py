@@ -18,13 +18,14 @@ warnings.filterwarnings("ignore", category=DeprecationWarning)  # use_nodes, whi
 sys.path += map(str, pathlib.Path(bpy.utils.resource_path("LOCAL")).glob("python/lib/python*/site-packages"))
 
 
-def start(width, height, bounces, filter_width=1):
-    """An empty scene that is rendered without what changes the expectation."""
+def start(width, height, bounces, box=True):
+    """An empty scene that is rendered without what changes the expectation; without `box`, a pixel is its middle."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
-    settings = {"device": "CPU", "shading_system": True, "use_adaptive_sampling": False, "use_denoising": False, "pixel_filter_type": "BOX",
-                "filter_width": filter_width, "sample_clamp_direct": 0, "sample_clamp_indirect": 0, "blur_glossy": 0,
+    settings = {"device": "CPU", "shading_system": True, "use_adaptive_sampling": False, "use_denoising": False, "pixel_filter_type": "BOX" if box else "GAUSSIAN",
+                "filter_width": 0.01,  # the box has a width of 1
+                "sample_clamp_direct": 0, "sample_clamp_indirect": 0, "blur_glossy": 0,
                 "light_sampling_threshold": 0, "max_bounces": bounces, "diffuse_bounces": bounces, "glossy_bounces": bounces,
                 "transmission_bounces": bounces}
     for name, value in settings.items():
@@ -149,7 +150,7 @@ def half_skies(above, below):
 
 def table(leaf):
     def rows(task, samples, seed):
-        seconds, scene = 0, start(40, 20, 2, filter_width=0.01)
+        seconds, scene, columns = 0, start(len(task.phi), len(task.theta), 2, box=False), len(task.phi)
         scene.world.use_nodes = True
         bpy.ops.mesh.primitive_plane_add(size=100)
         bpy.context.object.data.materials.append(material("leaf", leaf(task)))
@@ -162,7 +163,7 @@ def table(leaf):
             if hasattr(holder, "panorama_type"):
                 holder.panorama_type = "EQUIRECTANGULAR"
         scene.camera.rotation_euler = (math.pi / 2, 0, 0)  # the middle of the image is +y, its right +x, its top +z
-        of_column = (9 - numpy.arange(40)) % 40  # azimuths 4.5, 13.5 ... of view
+        of_column = (columns // 4 - 1 - numpy.arange(columns)) % columns  # by azimuth of view
 
         def draw(light, sky, front):
             nonlocal seconds

@@ -92,7 +92,10 @@ def brf(leaf):
             start = interface.cpu()
             found = frond.brf(scene, task.wavelengths_nm, zenith=[-z for z in task.view_zenith],  # frond's are negative on the sun's side
                               target=tuple(task.target), seed=seed, paths=samples)
-        return numpy.reshape(found["brf"], (len(task.view_zenith), -1)), interface.cpu() - start
+            seconds = interface.cpu() - start
+            shares = frond.flux(scene, task.wavelengths_nm, period=tuple(task.period), seed=seed, paths=min(16 * samples, 1 << 20))
+        brf = numpy.reshape(found["brf"], (len(task.view_zenith), -1))
+        return numpy.vstack([brf, shares[shares.quantity == "absorbed"].share]), seconds
     return measure
 
 

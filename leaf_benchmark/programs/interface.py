@@ -35,7 +35,8 @@ def cpu():
 
 def main(image, table, versions, brf=None, output=sys.stdout):
     """Runs one entry. `image(task, samples, seed, out)` and `table(task, samples, seed)` return CPU seconds without set-up, and the
-    latter the table before; so does `brf`, `[view][wavelength]`. A task that the entry cannot do raises NotImplementedError with the reason."""
+    latter the table before; so does `brf`, `[view][wavelength]`, with one more row if the program measures absorbed light. A task that the entry cannot do raises NotImplementedError with the reason, a
+    program that is not installed FileNotFoundError."""
     folder, samples, seed, out = sys.argv[1:]
     task = Task(folder)
     try:
@@ -51,6 +52,9 @@ def main(image, table, versions, brf=None, output=sys.stdout):
             raise NotImplementedError("measures no BRF")
     except NotImplementedError as reason:
         raise SystemExit(f"cannot: {reason}") from None
+    except FileNotFoundError as missing:
+        print(missing, file=sys.stderr)
+        raise SystemExit(127) from None
     print(json.dumps({"cpu_s": seconds, "setup_s": cpu() - seconds, "versions": versions}), file=output)
 
 
@@ -102,7 +106,7 @@ def rows_of_bsdf(task, f, sample, seed, rays):
 
 
 def rows_of_images(task, render):
-    """The table of a program that only renders: `render(sun, sky, front)` is the image [20][40][3] of all directions that is seen from
+    """The table of a program that only renders: `render(sun, sky, front)` is the image [theta][phi][3] of all directions that is seen from
     a point close to the leaf, on its front or back; `sun` is the light's direction, with an irradiance of 1 across it, or None; `sky` has
     the radiances of the upper and lower half of all directions. A pixel shows the light that leaves the leaf toward (theta, phi)."""
     half = numpy.array(task.theta) < 90

@@ -35,7 +35,7 @@ def film(width, height):
 def render(text, samples, seed):
     """Red, green and blue, and CPU seconds of the process."""
     if not PBRT:
-        raise NotImplementedError("there is no pbrt: set PBRT to the path of the program")
+        raise FileNotFoundError("there is no pbrt: set PBRT to the path of the program")
     with tempfile.TemporaryDirectory() as folder:
         path, out = pathlib.Path(folder, "scene.pbrt"), pathlib.Path(folder, "out.exr")
         path.write_text(text, encoding="utf-8")

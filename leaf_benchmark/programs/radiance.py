@@ -105,14 +105,17 @@ def table(leaves):
             for leaf in leaves(task):
                 with tempfile.TemporaryDirectory() as folder:
                     scene = World(pathlib.Path(folder), leaf + text)
-                    channels.append(scene.trace(rays, 0 if sun is not None else 1, next(seeds)).reshape(20, 40, samples, 3).mean(axis=2))
+                    channels.append(scene.trace(rays, 0 if sun is not None else 1, next(seeds)).reshape(*theta_phi[0].shape, samples, 3).mean(axis=2))
                     seconds += scene.cpu
             return channels[0] if len(channels) == 1 else numpy.stack([c[..., i] for i, c in enumerate(channels)], axis=-1)
         return list(interface.rows_of_images(task, render)), seconds
     return rows
 
 
+def version():
+    return " ".join(run(pathlib.Path("."), "rtrace", "-version").decode().split()[1:3])
+
+
 def main(leaves):
     """`leaves(task)` is a list of descriptions of the material `leaf`: one, or one for each colour."""
-    version = run(pathlib.Path("."), "rtrace", "-version").decode().split()
-    interface.main(image(leaves), table(leaves), {"Radiance": " ".join(version[1:3])})
+    interface.main(image(leaves), table(leaves), {"Radiance": version()})

@@ -11,6 +11,7 @@ import tempfile
 import numpy
 
 from measurements.race.scenes import Scene, Shape, affine, lamp, read, rotation
+from measurements.shared import ply
 from measurements.shared.tools import ROOT
 
 FOLDER = pathlib.Path(__file__).parent
@@ -41,26 +42,9 @@ IMAGES = {name: lambda folder, name=name: read(ROOT / f"scenes/soybean-{name}/sc
           for name in ("front", "back", "ambient")} | {"glow": glow}
 
 
-def read_ply(path):
-    """Points and triangles of a binary file."""
-    head, body = pathlib.Path(path).read_bytes().split(b"end_header\n", 1)
-    words = head.decode("ascii").split()
-    vertices, faces = (int(words[words.index(name) + 1]) for name in ("vertex", "face"))
-    columns = words[words.index("vertex"):words.index("face")].count("float")
-    points = numpy.frombuffer(body, "<f4", vertices * columns).reshape(vertices, columns)[:, :3]
-    record = numpy.dtype([("count", "u1"), ("of", "<i4", 3)])
-    triangles = numpy.frombuffer(body, record, faces, offset=4 * vertices * columns)
-    assert (triangles["count"] == 3).all()
-    return points.astype(float), triangles["of"]
-
-
 def write_meshes(path, points, triangles):
-    """NAME.ply, binary, and NAME.obj. The leaf's front is the side from which a triangle's vertices turn counter-clockwise."""
-    record = numpy.zeros(len(triangles), [("count", "u1"), ("of", "<i4", 3)])
-    record["count"], record["of"] = 3, triangles
-    head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}", *(f"property float {c}" for c in "xyz"),
-            f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header", ""]
-    path.with_suffix(".ply").write_bytes("\n".join(head).encode("ascii") + points.astype("<f4").tobytes() + record.tobytes())
+    """NAME.ply and NAME.obj. The leaf's front is the side from which a triangle's vertices turn counter-clockwise."""
+    ply.write(path.with_suffix(".ply"), points, triangles)
     lines = [f"v {x:.7g} {y:.7g} {z:.7g}" for x, y, z in points] + [f"f {a} {b} {c}" for a, b, c in triangles + 1]
     path.with_suffix(".obj").write_text("\n".join(lines) + "\n", encoding="ascii")
 
@@ -72,7 +56,7 @@ def meshes_of(scene):
     placed += [(shape, matrix @ shape.to_world) for name, matrix in scene.instances for shape in scene.shapes if shape.object == name]
     for shape, matrix in placed:
         p = shape.parameters
-        points, triangles = read_ply(p["filename"]) if "filename" in p else (
+        points, triangles = ply.read(p["filename"]) if "filename" in p else (
             numpy.reshape(p["P"], (-1, 3)), numpy.reshape(p["indices"], (-1, 3)).astype(int))
         if numpy.linalg.det(matrix[:3, :3]) < 0:
             triangles = triangles[:, ::-1]
@@ -156,8 +140,9 @@ def write_canopy():
               for name, angle in (("front", 8), ("back", 172))}
     write_json(FOLDER / "canopy" / "task.json", {
         "kind": "canopy", "wavelengths_nm": nm, "units": "metres, degrees; the sun is at (sin, 0, cos) of sun_zenith, and a view of positive "
-        "zenith on its side, in the same plane; target: xmin, xmax, ymin, ymax, z of the square that is measured",
-        "sun_zenith": 30, "view_zenith": [-60, -40, -20, 0, 20, 40, 60], "target": [-1.5, 1.5, -1.5, 1.5, height],
+        "zenith on its side, in the same plane; target: xmin, xmax, ymin, ymax, z of the square whose BRF is measured; "
+        "period: of the canopy in x and y, for the absorbed share of its light, not for the BRF",
+        "sun_zenith": 30, "view_zenith": [-60, -40, -20, 0, 20, 40, 60], "target": [-1.5, 1.5, -1.5, 1.5, height], "period": [side, side],
         "scattering_events": DEPTH, "surfaces": [{"name": "leaf", "mesh": "leaf", "reflectance": None}], "leaf": shares})
 
 

@@ -7,25 +7,23 @@
     cloud = FrondLeafCloud.cuboid(n_leaves=400, leaf_radius=0.1, l_horizontal=3.0, l_vertical=1.0)
     cloud.leaf = {"specimen": "maize"}
 
-`leaf` holds the parameters of `leaf_solved`; `incident` is "reciprocal" by default. The reflectance and transmittance spectra of
-a LeafCloud have no effect: the leaf is evaluated at the wavelengths of the experiment.
+`FrondMeshTreeElement` is the same for the leaves of a `MeshTree`, a mesh. `leaf` holds the parameters of `leaf_solved`; `incident` is
+"reciprocal" by default. The reflectance and transmittance spectra of the element have no effect: the leaf is evaluated at the
+wavelengths of the experiment.
 """
 
 import attrs
 import mitsuba as mi
 from eradiate.kernel import DictParameter, KernelSceneParameterFlags, SceneParameter, SearchSceneParameter
-from eradiate.scenes.biosphere import LeafCloud
+from eradiate.scenes.biosphere import LeafCloud, MeshTreeElement
 
 
 def _nm(ctx):
     return float(ctx.si.w.m_as("nm"))
 
 
-@attrs.define(eq=False, slots=False)
-class FrondLeafCloud(LeafCloud):
-    """A LeafCloud whose leaves are leaf_solved. Pass `leaf` to this class, or set it after a named constructor."""
-
-    leaf: dict = attrs.field(factory=dict, kw_only=True)
+class _FrondLeaf:
+    """The BSDF of an element with `leaf` and `bsdf_id`."""
 
     @property
     def _template_bsdfs(self):
@@ -41,3 +39,17 @@ class FrondLeafCloud(LeafCloud):
     def _params_bsdfs(self):
         search = SearchSceneParameter(mi.BSDF, self.bsdf_id, parameter_relpath="wavelength.value")
         return {f"{self.bsdf_id}.wavelength.value": SceneParameter(func=_nm, flags=KernelSceneParameterFlags.SPECTRAL, search=search)}
+
+
+@attrs.define(eq=False, slots=False)
+class FrondLeafCloud(_FrondLeaf, LeafCloud):
+    """A LeafCloud whose leaves are leaf_solved. Pass `leaf` to this class, or set it after a named constructor."""
+
+    leaf: dict = attrs.field(factory=dict, kw_only=True)
+
+
+@attrs.define(eq=False, slots=False)
+class FrondMeshTreeElement(_FrondLeaf, MeshTreeElement):
+    """A MeshTreeElement of leaves that are leaf_solved; the side is front from which a triangle's vertices turn counter-clockwise."""
+
+    leaf: dict = attrs.field(factory=dict, kw_only=True)

@@ -10,7 +10,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 import numpy
-import pandas
 
 from leaf_benchmark import __main__ as benchmark, checks, measures, page
 from leaf_benchmark.programs import interface
@@ -42,8 +41,7 @@ def lambertian(fault=""):
     if fault == "density":  # directions of one side alone are drawn, with the density of both
         table["R"] = [2 * v for v in table["R"]]
         table["T"] = [0 * v for v in table["T"]]
-    rows = pandas.DataFrame(list(interface.rows_of(TASK, f, table)), columns=interface.COLUMNS)
-    return rows.apply(pandas.to_numeric, errors="coerce").assign(quantity=rows.quantity)
+    return measures.frame(interface.rows_of(TASK, f, table))
 
 
 def failed(fault=""):
@@ -108,7 +106,28 @@ class Measures(unittest.TestCase):
         self.assertIsNone(measures.time_to(points, 0.015, 0.01))
 
 
+    def test_absorbed_light_is_the_row_beyond_the_views(self):
+        truth, found = numpy.full((8, 4), 0.5), numpy.full((8, 4), 0.5)
+        found[7] = 0.55
+        errors = measures.of_brf([found, found], [truth, truth], [450, 550, 670, 800], 7)
+        self.assertAlmostEqual(errors["absorbed"]["670"], 0.1)
+        self.assertEqual((errors["rms"], errors["noise"]), (0, 0))
+        self.assertNotIn("absorbed", measures.of_brf([found[:7]] * 2, [truth] * 2, [450, 550, 670, 800], 7))
+
+    def test_points_of_other_numbers_of_samples_stay(self):
+        of = lambda samples, value: {"points": [{"samples": samples, "cpu_s": value}], "bias": value}
+        kept = benchmark.merged(of(64, 1), of(8, 2))
+        self.assertEqual(([p["samples"] for p in kept["points"]], kept["bias"]), ([8, 64], 1))
+        self.assertEqual(benchmark.merged(of(64, 1), of(64, 2)), of(64, 2))
+
+
 class Page(unittest.TestCase):
+    def test_a_second_run_has_the_same_order(self):
+        counts, _ = page.repeated(page.results())
+        for same, pairs in counts.values():
+            self.assertGreater(pairs, 50)
+            self.assertEqual(same, pairs)
+
     def test_figures_are_those_of_record(self):
         text = page.PAGE.read_text(encoding="utf-8")
         self.assertEqual(page.page(text, page.results()), text)
