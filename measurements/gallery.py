@@ -5,6 +5,7 @@ Renders a small image for each, and writes it with the lines of the scene that m
   --quick       few samples, into build/gallery_report
 """
 
+import math
 import pathlib
 import shutil
 import tempfile
@@ -56,6 +57,15 @@ LEAFLET = f"""AttributeBegin
   Shape "plymesh" "string filename" "{ROOT}/scenes/meshes/leaflet-terminal-1.ply"
 AttributeEnd
 """
+def awn(i, count):
+    """A curve of a tuft: the i-th of `count`, by the golden angle."""
+    lean, angle = math.sqrt((i + 0.5) / count), 2.39996 * i
+    places = ((0.2 * lean, 0), (0.3 * lean, 0.6), (0.6 * lean, 1.2), (1.1 * lean, 1.7 - 0.5 * lean))
+    points = "  ".join(f"{out * math.cos(angle):.3f} {out * math.sin(angle):.3f} {height:.3f}" for out, height in places)
+    return f'Shape "curve" "string type" "cylinder" "float width0" 0.035 "float width1" 0.01 "point3 P" [ {points} ]\n'
+
+
+TUFT = "".join(awn(i, 260) for i in range(260))
 FILM = f'Film "rgb" "integer xresolution" {SIZE} "integer yresolution" {SIZE}\n'
 GREY = 'Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]\n'
 RED = 'Material "diffuse" "rgb reflectance" [ 0.55 0.12 0.06 ]\n'
@@ -75,6 +85,7 @@ MATERIALS = {
     "coatedconductor": 'Material "coatedconductor" "float conductor.roughness" 0.1 "float thickness" 0.02',
     "diffuse": 'Material "diffuse" "rgb reflectance" [ 0.2 0.35 0.6 ]',
     "diffusetransmission": 'Material "diffusetransmission" "rgb reflectance" [ 0.3 0.2 0.1 ] "rgb transmittance" [ 0.1 0.3 0.4 ]',
+    "hair": 'Material "hair" "rgb reflectance" [ 0.75 0.55 0.25 ] "float beta_m" 0.2',
     "measured": f'Material "measured" "string filename" "{MEASURED.name}"',
     "subsurface": 'Material "subsurface" "rgb reflectance" [ 0.75 0.35 0.12 ] "rgb mfp" [ 0.25 0.08 0.04 ] "float roughness" 0.02',
     "mix": 'MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"\n'
@@ -179,7 +190,7 @@ def scene_of(kind, name, lines):
     """All of the scene, and the samples of a pixel."""
     front, world, things, samples = VIEW + FILM, LIGHT, FLOOR, SAMPLES
     if kind == "material":
-        things += "AttributeBegin\n" + lines + "\n" + (LEAFLET if name.startswith(("leaf", "abm")) else BALL) + "AttributeEnd\n"
+        things += "AttributeBegin\n" + lines + "\n" + (LEAFLET if name.startswith(("leaf", "abm")) else TUFT if name == "hair" else BALL) + "AttributeEnd\n"
     elif kind == "spectrum texture":
         things += lines + '\nMaterial "diffuse" "texture reflectance" "pattern"\n' + BALL
     elif kind == "float texture":

@@ -13,6 +13,7 @@ extern const MaterialInfo conductor_material;
 extern const MaterialInfo dielectric_material;
 extern const MaterialInfo diffuse_material;
 extern const MaterialInfo diffuse_transmission_material;
+extern const MaterialInfo hair_material;
 extern const MaterialInfo interface_material;
 extern const MaterialInfo leaf_lambert_material;
 extern const MaterialInfo leaf_simplified_material;
@@ -25,10 +26,22 @@ extern const MaterialInfo thin_dielectric_material;
 namespace {
 
 constexpr std::array kMaterials{
-    &abm_material,          &coated_conductor_material, &coated_diffuse_material,       &conductor_material,
-    &dielectric_material,   &diffuse_material,          &diffuse_transmission_material, &interface_material,
-    &leaf_lambert_material, &leaf_simplified_material,  &leaf_solved_material,          &measured_material,
-    &mix_material,          &subsurface_material,       &thin_dielectric_material,
+    &abm_material,
+    &coated_conductor_material,
+    &coated_diffuse_material,
+    &conductor_material,
+    &dielectric_material,
+    &diffuse_material,
+    &diffuse_transmission_material,
+    &hair_material,
+    &interface_material,
+    &leaf_lambert_material,
+    &leaf_simplified_material,
+    &leaf_solved_material,
+    &measured_material,
+    &mix_material,
+    &subsurface_material,
+    &thin_dielectric_material,
 };
 
 }  // namespace

@@ -46,7 +46,6 @@ constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"function", "path", "", {}}};
 /// Integrators that compute another image: their replacement causes a warning.
 constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
-constexpr StandIn kMaterials[] = {{"hair", "diffuse", "materials", {}}};
 constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
 constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};
@@ -194,13 +193,6 @@ void warn_of_attributes(const SceneSettings& description, const Registry& r, con
   }
 }
 
-/// Renames the colour of material "hair", which has two names.
-void rename_color(ParsedPlugin& material) {
-  if (find_param(material.params, "reflectance")) return;
-  const auto color = std::ranges::find(material.params, "color", &ParsedParam::name);
-  if (color != material.params.end()) color->name = "reflectance";
-}
-
 /// Sets the field of view of a 50 mm lens on the film; pbrt's field of view refers to the shorter side.
 void set_field_of_view(ParsedPlugin& camera, const ParsedPlugin& film) {
   constexpr double kFocalLength = 50;  // mm
@@ -240,11 +232,8 @@ void translate_pbrt_plugins(SceneDescription& description, const Registry& regis
   if (translator.translate("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
     problems.attempt([&] { set_field_of_view(d.camera, d.film); });
   translator.translate("Film", registry.films, kFilms, kOldFilms, d.film);
-  for (MaterialDescription& m : d.materials) {
-    const bool is_hair = m.plugin.name == "hair";
-    if (is_hair && !registry.materials.find("hair")) rename_color(m.plugin);
-    translator.translate("Material", registry.materials, kMaterials, kOldMaterials, m.plugin);
-  }
+  for (MaterialDescription& m : d.materials)
+    translator.translate("Material", registry.materials, {}, kOldMaterials, m.plugin);
   for (TextureDescription& t : d.textures) {
     const bool is_real = t.value == TextureDescription::Value::real;
     const bool is_answered =

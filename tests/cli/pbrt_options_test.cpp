@@ -27,8 +27,9 @@ class PbrtOptions : public CommandTest {
     folder_.write("bad.pbrt", std::string(kOptions) + "Sampler \"zobol\"\n" + std::string(kWorld) +
                                   "Shape \"sphere\" \"float radus\" 1\nTranslate 1 2\n"
                                   "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"\n");
-    folder_.write("other.pbrt", std::string(kOptions) + std::string(kWorld) +
-                                    "Material \"hair\" Shape \"sphere\"\nTexture \"t\" \"float\" \"ptex\"\n");
+    std::string other(kOptions);
+    other.replace(other.find("perspective"), std::strlen("perspective"), "realistic");
+    folder_.write("other.pbrt", other + std::string(kWorld) + "Texture \"t\" \"float\" \"ptex\"\n");
   }
 };
 
@@ -128,14 +129,14 @@ TEST_F(PbrtOptions, WhatRenderRefusesCheckRefuses) {
 }
 
 TEST_F(PbrtOptions, WarningsOfManyPlacesAreToldOnce) {
-  std::string hair, names;
-  for (int i = 0; i < 100; ++i) hair += "Material \"hair\" Shape \"sphere\"\n";
+  std::string textures, names;
+  for (int i = 0; i < 100; ++i) textures += fmt::format("Texture \"t{}\" \"float\" \"ptex\"\n", i);
   for (int i = 0; i < 100; ++i) names += fmt::format("CoordSysTransform \"c{}\"\n", i);
-  folder_.write("hair.pbrt", std::string(kOptions) + std::string(kWorld) + hair + names);
-  const Outcome lenient = frond_command({"check", "--ignore-unsupported", path("hair.pbrt")});
+  folder_.write("many.pbrt", std::string(kOptions) + std::string(kWorld) + textures + names);
+  const Outcome lenient = frond_command({"check", "--ignore-unsupported", path("many.pbrt")});
   EXPECT_EQ(lenient.code, 0);
   EXPECT_EQ(std::ranges::count(lenient.err, '\n'), 1 + 1 + 20 + 1) << lenient.err;
-  EXPECT_THAT(lenient.err, AllOf(HasSubstr("hair.pbrt:5:10: warning: Material \"hair\" of pbrt-v4"),
+  EXPECT_THAT(lenient.err, AllOf(HasSubstr("many.pbrt:5:22: warning: Texture \"ptex\" of pbrt-v4"),
                                  HasSubstr("here and at 99 more locations"), HasSubstr("here and 80 more like it")));
 }
 
@@ -150,9 +151,9 @@ TEST_F(PbrtOptions, StrictTellsWarningsBesideErrors) {
 TEST_F(PbrtOptions, RadiometersAndComparisonsReadScenesAsRenderDoes) {
   for (const char* command : {"brf", "flux"}) {
     std::vector<std::string> words{command, path("other.pbrt"), "--paths", "64"};
-    EXPECT_THAT(frond_command(words).err, HasSubstr("with --ignore-unsupported=materials")) << command;
+    EXPECT_THAT(frond_command(words).err, HasSubstr("with --ignore-unsupported=cameras")) << command;
     words.emplace_back("--ignore-unsupported");
-    EXPECT_THAT(frond_command(words).err, Not(HasSubstr("with --ignore-unsupported=materials"))) << command;
+    EXPECT_THAT(frond_command(words).err, Not(HasSubstr("with --ignore-unsupported=cameras"))) << command;
   }
   const Outcome compared =
       frond_command({"compare", path("other.pbrt"), "-o", path("report"), "--ignore-unsupported", "--quick"});
@@ -187,16 +188,16 @@ TEST_F(PbrtOptions, AllThatIsWrongIsTold) {
 TEST_F(PbrtOptions, WhatIsUnsupportedCanBeLetPass) {
   const Outcome refused = frond_command({"render", path("other.pbrt"), "-o", path("a.exr"), "--spp", "1"});
   EXPECT_EQ(refused.code, 1);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("other.pbrt:5:10: Material \"hair\" of pbrt-v4 is not supported"),
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("other.pbrt:1:33: Camera \"realistic\" of pbrt-v4 is not supported"),
                                  HasSubstr("--ignore-unsupported=textures")));
   for (const std::vector<std::string>& words : {std::vector<std::string>{"--ignore-unsupported", path("other.pbrt")},
-                                                {"--ignore-unsupported", "materials,textures", path("other.pbrt")},
+                                                {"--ignore-unsupported", "cameras,textures", path("other.pbrt")},
                                                 {"--ignore-unsupported=all", path("other.pbrt")}}) {
     const Outcome passed = frond_command({"render", "-o", path("a.exr"), "--spp", "1"}, words);
     EXPECT_EQ(passed.code, 0) << passed.err;
-    EXPECT_THAT(passed.err, HasSubstr("warning: Material \"hair\" of pbrt-v4 is not supported"));
+    EXPECT_THAT(passed.err, HasSubstr("warning: Camera \"realistic\" of pbrt-v4 is not supported"));
   }
-  EXPECT_EQ(frond_command({"check", "--ignore-unsupported", "materials", path("other.pbrt")}).code, 1);
+  EXPECT_EQ(frond_command({"check", "--ignore-unsupported", "cameras", path("other.pbrt")}).code, 1);
 }
 
 TEST_F(PbrtOptions, StrictMakesErrorsOfWarnings) {

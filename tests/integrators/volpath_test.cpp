@@ -211,6 +211,33 @@ Shape "disk" "float radius" 3
     EXPECT_NEAR(a.mean[i], b.mean[i], kSigmas * std::hypot(a.error[i], b.error[i])) << kBands[i];
 }
 
+// Path, with light samples and without, and volpath agree on hair under a sky and a lamp.
+TEST(VolPath, AgreesWithPathOnHair) {
+  std::string world = R"(
+LightSource "infinite" "spectrum L" [300 .5 900 .5]
+AttributeBegin
+AreaLightSource "diffuse" "spectrum L" [300 2 900 2]
+Translate 0 2 2
+Shape "sphere" "float radius" .8
+AttributeEnd
+Material "hair" "spectrum sigma_a" [300 .05 900 .4] "float beta_m" .4
+)";
+  for (const double x : {-0.6, -0.2, 0.1, 0.5})
+    world += fmt::format(
+        "Shape \"curve\" \"string type\" \"cylinder\" \"float width\" .4 \"point3 P\" [ {0} -2 0  {0} -1 {0}  {0} 1 "
+        "{0}  {0} 2 "
+        "0 ]\n",
+        x);
+  std::string scattered = looking_down(world, 8, "path");
+  scattered.insert(scattered.find("\"integer maxdepth\""), "\"bool sampledirect\" false ");
+  const BandMeans a = band_means(looking_down(world, 8, "path"), 1024);
+  for (const std::string& other : {looking_down(world, 8), scattered}) {
+    const BandMeans b = band_means(other, 1024);
+    for (size_t i = 0; i < kBands.size(); ++i)
+      EXPECT_NEAR(a.mean[i], b.mean[i], kSigmas * std::hypot(a.error[i], b.error[i])) << kBands[i];
+  }
+}
+
 // Light samples, scattered rays alone, and both with each selection of lights have the same mean.
 TEST(VolPath, LightSamplesDoNotChangeTheMean) {
   const std::string world = layer(R"("string type" "homogeneous" "spectrum sigma_a" [400 .2 700 .1]

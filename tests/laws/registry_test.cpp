@@ -191,6 +191,11 @@ TEST(Lossless, DielectricsReturnAllLight) {
   expect_lossless("thindielectric", {falling("eta", 1.8, 1.3)});
 }
 
+TEST(Lossless, HairWithoutAbsorptionReturnsAllLight) {
+  expect_lossless("hair", {level("sigma_a", 0)});
+  expect_lossless("hair", {level("reflectance", 1), given("float", "beta_m", 0.1), given("float", "alpha", 30.0)});
+}
+
 TEST(Lossless, WhiteUnderASmoothCoatReturnsAllLight) {
   expect_lossless("coateddiffuse",
                   {level("reflectance", 1), given("float", "thickness", 0.0), given("integer", "maxdepth", 1000.0)});

@@ -32,6 +32,8 @@ Theme skies();
 Theme media();
 /// Material "measured": valid and invalid goniometer tables, and a tensor file to the horizon.
 Theme measured();
+/// Material "hair": ends of its ranges, light along the fibre.
+Theme hair();
 /// Material "subsurface": no absorption, no scattering, ends of ranges.
 Theme subsurface();
 /// Fluorescence: no and much chlorophyll, yields 0 and 1, grazing light, excitation within the emission.

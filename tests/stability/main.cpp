@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
   const std::vector<Theme> themes{incidence(),   ends_of_ranges(), outside_ranges(), absorption(),
                                   indices(),     dispersion(),     directions(),     table_files(),
                                   instruments(), tails(),          scenes(),         skies(),
-                                  media(),       measured(),       subsurface(),     fluorescence()};
+                                  media(),       measured(),       hair(),           subsurface(),
+                                  fluorescence()};
   fmt::print("{}", markdown ? to_markdown(themes) : to_text(themes));
   const std::vector<std::string> list = surprises(themes);
   for (const std::string& line : list) fmt::print(stderr, "UNEXPECTED: {}\n", line);

@@ -71,6 +71,7 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"cloud", "the same with `cloud`"},
     {"nanovdb", "the same with `nanovdb`, of a fog volume of a torus"},
     {"measured", "material `measured`: f integrated over all directions, and `sample`"},
+    {"hair", "material `hair`: `sample`, `f` and `pdf`"},
     {"path, subsurface", "the path integrator, rendering a plane of `subsurface`"},
     {"volpath, subsurface", "the same with the volpath integrator"},
 }};

@@ -39,6 +39,7 @@ enum class Method : uint8_t {
   cloud,
   nanovdb,
   measured,
+  hair,
   path_subsurface,
   volpath_subsurface,
 };
@@ -46,7 +47,7 @@ struct MethodName {
   std::string_view name, doc;
 };
 const MethodName& describe(Method method);
-inline constexpr size_t kMethods = 30;
+inline constexpr size_t kMethods = 31;
 
 /// Result of one method in one case.
 struct Cell {
