@@ -138,21 +138,22 @@ def keep(folder, name, task, result, versions, again):
     known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"entry": name, "versions": {}, "tasks": {}}
     known["versions"] |= versions
     before = known["tasks"].setdefault(task, {})
-    if again:
+    if again and "points" in result:
         before["again"] = {"points": result["points"], "bias": result["bias"]["all"]}
-    else:
+    elif not again:
         known["tasks"][task] = merged(before, result | {"machine": machine(), "date": datetime.date.today().isoformat(), "load": max(os.getloadavg())})
     folder.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(rounded(known), indent=1) + "\n", encoding="utf-8")
 
 
 def merged(before, result):
-    """A result with the points of an earlier one; measures are those of the render with the most samples."""
+    """A result with the points and the second run of an earlier one; measures are those of the render with the most samples."""
     if not (before.get("points") and result.get("points")):
         return result
     points = {point["samples"]: point for point in [*before["points"], *result["points"]]}
     last = max((before, result), key=lambda r: (r["points"][-1]["samples"], r is result))
-    return last | {"points": [points[n] for n in sorted(points)]}
+    again = {"again": before["again"]} if "again" in before else {}
+    return last | {"points": [points[n] for n in sorted(points)]} | again
 
 
 def rounded(value):

@@ -89,6 +89,15 @@ class Interface(unittest.TestCase):
                 benchmark.run(folder, TASK, 1, 1, out)
 
 
+    def test_a_program_that_is_not_installed(self):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            (folder / "entry").write_text("#!/usr/bin/env a-program-that-nobody-has\n", encoding="utf-8")
+            (folder / "entry").chmod(0o755)
+            with self.assertRaisesRegex(FileNotFoundError, "a-program-that-nobody-has"):
+                benchmark.run(folder, TASK, 1, 1, folder / "1.csv")
+
+
 class Measures(unittest.TestCase):
     def test_bias_is_separate_from_noise(self):
         # 1e4 pixels of fixed seed: the interval misses the bias by chance in one of twenty seeds.
@@ -119,6 +128,7 @@ class Measures(unittest.TestCase):
         kept = benchmark.merged(of(64, 1), of(8, 2))
         self.assertEqual(([p["samples"] for p in kept["points"]], kept["bias"]), ([8, 64], 1))
         self.assertEqual(benchmark.merged(of(64, 1), of(64, 2)), of(64, 2))
+        self.assertEqual(benchmark.merged(of(8, 1) | {"again": 3}, of(64, 2))["again"], 3)
 
 
 class Page(unittest.TestCase):
