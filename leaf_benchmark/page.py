@@ -197,13 +197,13 @@ def draw(of):
     color = dict(zip(dict.fromkeys(e["program"] for e in of.values() if bias(e, "front")), charts.COLORS[1:] + charts.COLORS[:1]))
     for panel, task in zip(panels[0], CHARTED):
         marks = {}
-        for entry in of.values():
+        for name, entry in of.items():
             points = entry["tasks"].get(task, {}).get("points")
             if points:
                 mark = "os^Dvx"[marks.setdefault(entry["program"], 0) % 6]
                 marks[entry["program"]] += 1
                 panel.plot([p["cpu_s"] for p in points], [p["rms"] for p in points], marker=mark, color=color[entry["program"]],
-                           label=f"{entry['program']}: {entry['material'].replace('`', '')}", linewidth=1.4)
+                           linestyle=":" if name in LAMBERTIAN else "-", label=f"{entry['program']}: {entry['material'].replace('`', '')}", linewidth=1.4)
         panel.set(xscale="log", yscale="log", title=task, xlabel="CPU time of one image (s)")
     panels[0][0].set_ylabel("RMS error over leaf pixels (1: white)")
     charts.legend(drawn, panels[0][0], 3)
