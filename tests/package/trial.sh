@@ -7,7 +7,8 @@ started=$2
 mkdir /tmp/results
 cd /tmp/results
 frond --version
-frond list | grep -q "^  abm "
+frond list >list.txt
+grep -q "^  abm " list.txt
 frond render "$scenes/soybean-front/scene.pbrt" --quick -o leaf.png
 frond spectrophotometer leaf_solved,specimen=maize --wavelengths 400:2500:10 --plot maize.svg
 echo "First image and first chart $(($(date +%s) - started)) s after the start of the installation"
