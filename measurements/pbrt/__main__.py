@@ -56,22 +56,24 @@ ON_PURPOSE = [
 
 
 class Reference:
-    """pbrt-v4's values of one scene: means of blocks and their standard errors, `[row][column][channel]`."""
+    """pbrt-v4's values of one scene: means of blocks and their standard errors, `[row][column][channel]`. The channels are R, G
+    and B, and those that the head names after them."""
 
     def __init__(self, path):
         lines = path.read_text(encoding="utf-8").splitlines()
         heads = (line[1:].partition(":") for line in lines if line.startswith("#"))
         head = {key.strip(): value.strip() for key, _, value in heads}
         self.feature, self.block = next(iter(head.values())), int(head["block"].split()[0])
+        self.channels = head.get("channels", "R G B").split()
         values = numpy.array([line.split(",") for line in lines if line and not line.startswith(("#", "block"))], float)
         across = len(numpy.unique(values[:, 0]))
-        self.mean, self.error = (values[:, part].reshape(-1, across, 3) for part in (slice(2, 5), slice(5, 8)))
+        self.mean, self.error = (part.reshape(-1, across, len(self.channels)) for part in numpy.split(values[:, 2:], 2, axis=1))
 
 
 def block_means(image, size):
     """Means of all complete blocks, `[row][column][channel]`."""
     down, across = (n // size for n in image.shape[:2])
-    return image[:down * size, :across * size].reshape(down, size, across, size, 3).mean(axis=(1, 3), dtype=float)
+    return image[:down * size, :across * size].reshape(down, size, across, size, -1).mean(axis=(1, 3), dtype=float)
 
 
 def smoothed(variances):
@@ -101,11 +103,12 @@ def examine(name, options, session):
     try:
         for seed in range(9001, 9001 + options.seeds):
             image = session.load(FOLDER / f"{name}.pbrt", seed=seed).render(options.spp)
-            renders.append(block_means(image.rgb, reference.block))
+            buckets = [image[name][..., None] for name in reference.channels[3:]]
+            renders.append(block_means(numpy.concatenate([image.rgb, *buckets], axis=2), reference.block))
     except frond.InputError as error:
         return reference, "refused", 0, re.sub(r"^\S*?([^/ ]+\.pbrt)", r"\1", str(error).strip().splitlines()[0])
     z, difference = compare(reference, renders)
-    return reference, "agrees" if abs(z) <= options.z else "differs", z, difference
+    return reference, "agrees" if abs(z) <= options.z else "differs", z, difference[:3]
 
 
 def percent(differences):

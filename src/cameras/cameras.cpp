@@ -6,6 +6,7 @@
 #include "core/math/equal_area.h"
 #include "core/math/float4.h"
 #include "core/math/sampling.h"
+#include "core/projection.h"
 
 namespace frond {
 namespace {
@@ -30,7 +31,7 @@ Screen screen_of(const Params& p, const CameraPlacement& film) {
 }
 
 /// Maps film pixels to screen coordinates, and models the thin lens of both projective cameras.
-class ProjectiveCamera : public Camera {
+class ProjectiveCamera : public Camera, public Projection {
  public:
   /// `scale` is the factor of the screen window: tan(fov / 2) for a perspective camera, 1 for an orthographic one.
   ProjectiveCamera(const Params& p, const CameraPlacement& placement, float scale)
@@ -102,7 +103,7 @@ class ProjectiveCamera : public Camera {
 class PerspectiveCamera final : public ProjectiveCamera {
  public:
   PerspectiveCamera(const Params& p, const CameraPlacement& film)
-      : ProjectiveCamera(p, film, float(std::tan(p.real("fov") * std::numbers::pi / 360))) {}
+      : ProjectiveCamera(p, film, float(scale_of(p))), scale_(scale_of(p)) {}
   Ray ray(Vec2 film, Vec2 lens) const override {
     const Vec2 s = screen_point(film);
     return to_world({0, 0, 0}, {s.x, s.y, 1}, lens);
@@ -115,6 +116,16 @@ class PerspectiveCamera final : public ProjectiveCamera {
       if (!to_world(screen_x(film + i), screen_y(film + i), to + i)) break;
     Camera::rays(film + i, lens + i, count - i, to + i);
   }
+  Matrix screen_from_camera() const override {
+    constexpr double kNear = 0.01, kFar = 1000;  // planes of pbrt-v4, camera-space units
+    const double z = kFar / (kFar - kNear);
+    return {{{1 / scale_, 0, 0, 0}, {0, 1 / scale_, 0, 0}, {0, 0, z, -kNear * z}, {0, 0, 1, 0}}};
+  }
+
+ private:
+  static double scale_of(const Params& p) { return std::tan(p.real("fov") * std::numbers::pi / 360); }
+
+  double scale_;  ///< half of the width of the plane z = 1 along the shorter axis
 };
 
 /// Parallel projection along +z. The screen window is in camera-space units.
@@ -125,6 +136,8 @@ class OrthographicCamera final : public ProjectiveCamera {
     const Vec2 s = screen_point(film);
     return to_world({s.x, s.y, 0}, {0, 0, 1}, lens);
   }
+  /// The near plane is z = 0 and the far plane z = 1, as in pbrt-v4.
+  Matrix screen_from_camera() const override { return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}; }
 };
 
 /// Names of "mapping": the octahedral map of Clarberg 2008, which preserves area (pbrt 4th ed., 3.8.3), and

@@ -84,6 +84,33 @@ constexpr auto kGbuffer = [] {
   return params;
 }();
 
+/// Wavelengths that a bucket can have, and the largest number of buckets, as of wavelengths "bands".
+constexpr Interval kAllowed_nm{300, 2500};
+constexpr Interval kBuckets{1, 10000};
+/// Parameters of "rgb" and the buckets.
+constexpr auto kSpectral = [] {
+  std::array<Param, kRgb.size() + 3> params{};
+  const auto next = std::ranges::copy(kRgb, params.begin()).out;
+  next[0] = {.name = "nbuckets",
+             .kind = ParamKind::integer,
+             .default_value = 16,
+             .range = kBuckets,
+             .doc = "Number of spectral channels, which divide the wavelengths into equal intervals."};
+  next[1] = {.name = "lambdamin",
+             .kind = ParamKind::real,
+             .default_value = 360.0,
+             .unit = "nm",
+             .range = kAllowed_nm,
+             .doc = "Shortest wavelength."};
+  next[2] = {.name = "lambdamax",
+             .kind = ParamKind::real,
+             .default_value = 830.0,
+             .unit = "nm",
+             .range = kAllowed_nm,
+             .doc = "Longest wavelength; pbrt-v4 refuses more than 830 nm."};
+  return params;
+}();
+
 /// Returns the crop of "cropwindow", which takes precedence as in pbrt, or of "pixelbounds", or the whole film.
 Crop crop_in(const Params& p, int width, int height) {
   auto window = p.reals("cropwindow");
@@ -121,7 +148,7 @@ std::string file_name(const Params& p) {
   return name.string();
 }
 
-/// Settings that both films share.
+/// Settings that all films share.
 FilmSettings make_rgb_film(const Params& p) {
   FilmSettings s;
   s.width = p.integer("xresolution");
@@ -144,6 +171,14 @@ FilmSettings make_gbuffer_film(const Params& p) {
   s.channels = {"Albedo",           "position", "N",        "Ns",       "uv",     "Variance",
                 "RelativeVariance", "depth",    "material", "instance", "samples"};
   s.features_in_camera_space = p.string("coordinatesystem") == "camera";
+  return s;
+}
+
+/// make_wavelengths samples the wavelengths of the buckets.
+FilmSettings make_spectral_film(const Params& p) {
+  FilmSettings s = make_rgb_film(p);
+  s.buckets = p.integer("nbuckets");
+  s.buckets_nm = {p.real("lambdamin"), p.real("lambdamax")};
   return s;
 }
 
@@ -173,5 +208,9 @@ extern const FilmInfo rgb_film{{"film", "rgb", "Three colour channels.", "pbrt-v
 extern const FilmInfo gbuffer_film{
     {"film", "gbuffer", "Three colour channels, and data of the first hit of camera rays.", "pbrt-v4", kGbuffer},
     make_gbuffer_film};
+extern const FilmInfo spectral_film{
+    {"film", "spectral", "Three colour channels, and the mean radiance in intervals of wavelengths.", "pbrt-v4",
+     kSpectral},
+    make_spectral_film};
 
 }  // namespace frond

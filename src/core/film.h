@@ -27,7 +27,9 @@ struct FilmSettings {
   double max_component = std::numeric_limits<double>::infinity();
 
   std::vector<std::string> channels = {};  ///< additional channels: names of render/film/channels.h
-  bool features_in_camera_space = false;   ///< space of normals and positions: camera space, else world space
+  int buckets = 0;               ///< number of spectral channels beside the colours: mean radiance in intervals
+  Interval buckets_nm = {0, 0};  ///< the wavelengths that the buckets divide into equal intervals
+  bool features_in_camera_space = false;  ///< space of normals and positions: camera space, else world space
 
   /// Largest finite value of a channel of the EXR file.
   double largest_value() const { return half ? 65504 : double(std::numeric_limits<float>::max()); }

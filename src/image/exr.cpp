@@ -5,6 +5,8 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfThreading.h>
@@ -53,6 +55,12 @@ Imf::Header make_header(const Image& image, const ImageHeader& header) {
   Imf::Header exr(Imath::Box2i{{0, 0}, whole - one}, data);
   exr.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [key, value] : header.text) exr.insert(key, Imf::StringAttribute(value));
+  for (const auto& [key, m] : header.matrices) {
+    Imath::M44f matrix;
+    std::ranges::copy(m, matrix.getValue());
+    exr.insert(key, Imf::M44fAttribute(matrix));
+  }
+  if (header.samples > 0) exr.insert("samplesPerPixel", Imf::IntAttribute(header.samples));
   if (const Chromaticities* c = chromaticities_of(header.color_space))
     Imf::addChromaticities(exr, Imf::Chromaticities(xy(c->red), xy(c->green), xy(c->blue), xy(c->white)));
   return exr;

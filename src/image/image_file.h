@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,6 +17,9 @@ namespace frond {
 /// Header attribute with a file's colour space.
 inline constexpr const char* kColorSpaceKey = "frond:colorspace";
 
+/// Matrix of an EXR's header, row by row.
+using HeaderMatrix = std::array<float, 16>;
+
 /// Metadata of an image file.
 struct ImageHeader {
   std::string color_space;                  ///< linear name of spectra/color/color_space.h; empty: unknown
@@ -25,6 +29,8 @@ struct ImageHeader {
   int x = 0, y = 0, full_width = 0, full_height = 0;
   /// Channels that are stored as floats in an EXR of halves: ids and positions, which halves cannot represent.
   std::vector<std::string> full_precision = {};
+  std::map<std::string, HeaderMatrix> matrices = {};  ///< matrices by name, in an EXR alone, when it is written
+  int samples = 0;                                    ///< samples of each pixel, the same way; 0: unknown
 };
 
 /// Floating-point format of an EXR's channels: 16 or 32 bits.

@@ -31,6 +31,13 @@ std::string sensitivity_text(std::span<const ResponsePoint> response) {
   return text;
 }
 
+/// Whether a channel is a bucket of pbrt-v4 or of bucket_bands, by the three digits of its wavelength: its unit is the
+/// radiance of a white surface in equal-energy light of luminance 1.
+bool is_bucket(std::string_view channel) {
+  constexpr size_t kDigits = 3;
+  return channel.ends_with(kUnit) && channel.rfind(',') + 1 + kDigits + kUnit.size() == channel.size();
+}
+
 std::optional<double> number_of(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -79,6 +86,19 @@ size_t channel_of(const std::string& band, const std::vector<SpectralChannel>& c
 
 }  // namespace
 
+/// In float and with three digits, as in pbrt-v4: the names are the same to the last digit.
+std::vector<Band> bucket_bands(int count, Interval range_nm) {
+  const auto min = float(range_nm.min), max = float(range_nm.max);
+  std::vector<Band> bands;
+  for (int i = 0; i < count; ++i) {
+    const float t = (float(i) + 0.5f) / float(count), center = (1 - t) * min + t * max;
+    std::string name = fmt::format("{:.3f}{}", center, kUnit);
+    std::ranges::replace(name, '.', ',');
+    bands.push_back({double(center), {}, name});
+  }
+  return bands;
+}
+
 std::string spectral_channel(double nm) { return std::string(kPrefix) + wavelength_text(nm); }
 
 std::string spectral_channel(const Band& band) {
@@ -112,10 +132,11 @@ std::map<std::string, std::string> spectral_attributes(std::span<const Band> ban
 Image false_color_image(const ImageFile& file, const std::string& path, std::span<const std::string> bands) {
   const auto channels = spectral_channels(file.image);
   if (channels.empty()) fail({}, "{} has no bands: frond render --wavelengths bands makes images that do", path);
-  const auto per_radiance = float(photometric(ConstantSpectrum(1)));
   std::array<size_t, 3> chosen{};
   for (size_t c = 0; c < 3; ++c) chosen[c] = channel_of(bands[c], channels, path);
   Image image = file.image.selected(chosen, {"R", "G", "B"});
+  if (is_bucket(file.image.channels[chosen[0]])) return image;
+  const auto per_radiance = float(photometric(ConstantSpectrum(1)));
   for (float& v : image.pixels) v *= per_radiance;
   return image;
 }

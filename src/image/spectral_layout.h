@@ -17,6 +17,9 @@ namespace frond {
 // A band that a sensor's response defines has a name, which stands in place of the wavelength: "S0.nir",
 // "variance.nir".
 
+/// Returns the buckets of a film: equal intervals of a range, named after their centres as by pbrt-v4: "374,688nm".
+std::vector<Band> bucket_bands(int count, Interval range_nm);
+
 /// Returns the name of a channel of radiance, such as "S0.551,000000nm".
 std::string spectral_channel(double nm);
 /// Returns the name of a band's channel of radiance.

@@ -40,6 +40,7 @@ void write_merged(const RenderPart& whole, const ImageOutput& output, const JobR
     run.log().warn({},
                    "pixels at the edges lack samples of neighbouring pixels within the filter's radius: other parts of "
                    "the image contain them");
+  if (const std::string text = unsampled_text(whole.film); !text.empty()) run.log().warn({}, text);
   const auto& exposure = output.display().exposure;
   report_exposure(run, exposure && exposure->is_auto, output.write(whole.film, finished_format(whole)), output.path());
 }

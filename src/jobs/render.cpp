@@ -276,6 +276,7 @@ class SceneRender {
                           "there, and noise is underestimated",
                           100 * tail.share));
     if (output_) {
+      if (const std::string text = unsampled_text(part.film); !text.empty()) log.warn({}, text);
       const auto& exposure = output_->display().exposure;
       const auto applied = output_->write(part.film, finished_format(part));
       report_exposure(run_, exposure && exposure->is_auto, applied, output_->path());

@@ -42,8 +42,10 @@ std::optional<AppliedExposure> ImageOutput::write(const Film& film, const ImageF
   for (const ChannelInfo* channel : film.format().channels.infos())
     for (std::string& name : channel->exr_names()) full_precision.push_back(std::move(name));
   const std::string space = format.space.empty() ? preview_space(format.bands) : format.space;
-  write_image(path_, image, {space, attributes, s.crop.x0, s.crop.y0, s.width, s.height, full_precision},
-              s.half ? ExrDepth::half : ExrDepth::single);
+  write_image(
+      path_, image,
+      {space, attributes, s.crop.x0, s.crop.y0, s.width, s.height, full_precision, format.matrices, format.samples},
+      s.half ? ExrDepth::half : ExrDepth::single);
   return {};
 }
 

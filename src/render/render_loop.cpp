@@ -107,9 +107,23 @@ class Worker {
   }
 
   Triple albedo(const FirstHit& first, const SampledWavelengths& lambda) const {
-    if (format_.bands > 0) return {};
+    if (!format_.has_colors()) return {};
     const Triple color = format_.color * wavelengths_.sensor(first.albedo, lambda).color();
     return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
+  }
+
+  /// Radiance by bucket; wavelengths beyond the buckets are left out.
+  SensorResponse bucket_response(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const {
+    const auto [min, max] = format_.settings.buckets_nm;
+    SensorResponse response;
+    for (size_t i = 0; i < size_t(lambda.count); ++i) {
+      const double nm = double(lambda.nm[i]), share = (nm - min) / (max - min);
+      if (share < 0 || share > 1) continue;
+      const auto lane = size_t(response.count++);
+      response.value[lane] = double(radiance.v[i]);
+      response.channel[lane] = uint16_t(std::min(size_t(share * double(format_.bands)), format_.bands - 1));
+    }
+    return response;
   }
 
   bool is_leaf(const FirstHit& first) const {
@@ -119,18 +133,20 @@ class Worker {
   /// Adds the results `begin` to `end - 1` of the bundle to the tile.
   void add_results(int x, int y, size_t begin, size_t end) {
     const bool has_channels = format_.channels.means() + format_.channels.ids() > 0;
-    const bool has_mattes = format_.channels.mattes() > 0;
+    const bool has_mattes = format_.channels.mattes() > 0, has_buckets = format_.has_buckets();
     for (size_t i = begin; i < end; ++i) {
       const PathResult& path = bundle_.results[i];
       const SampledWavelengths& lambda = bundle_.lambda[i];
       const auto& [offset, weight] = samples_.position(i);
       // No radiance gives no response: the conversion is linear.
-      const bool is_black = format_.bands == 0 && path.radiance.is_black();
+      const bool is_black = format_.has_colors() && path.radiance.is_black();
       ::new (&film_samples_[i]) FilmTile::Sample{
           is_black ? SensorResponse(std::array<double, 3>{}) : wavelengths_.sensor(path.radiance, lambda),
           double(weight),
           is_leaf(path.first),
           {offset.x + 0.5f, offset.y + 0.5f}};
+      if (has_buckets)
+        bucket_samples_[i] = {bucket_response(path.radiance, lambda), double(weight), false, film_samples_[i].place};
       if (path.first.is_hit && has_channels) {
         Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
         features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
@@ -145,6 +161,7 @@ class Worker {
     }
     const SplatKernel* kernel = kernel_ ? &*kernel_ : nullptr;
     tile_.add(format_, x, y, std::span(film_samples_).subspan(begin, end - begin), kernel);
+    if (has_buckets) tile_.add_buckets(format_, x, y, std::span(bucket_samples_).subspan(begin, end - begin), kernel);
     if (has_mattes) tile_.add_mattes(x, y, std::span(mattes_).subspan(begin, end - begin), kernel);
   }
 
@@ -160,7 +177,7 @@ class Worker {
   std::unique_ptr<Tracer> tracer_;
   CameraSamples samples_;
   PathBundle& bundle_;  ///< of samples_
-  std::array<FilmTile::Sample, kBundle> film_samples_;
+  std::array<FilmTile::Sample, kBundle> film_samples_, bucket_samples_;
   std::array<MatteSample, kBundle> mattes_;
   FilmTile tile_;
   Vec3 axis_;  ///< viewing direction, along which depth is measured

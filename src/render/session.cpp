@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "core/projection.h"
+#include "image/spectral_layout.h"
 #include "image/white_balance.h"
 #include "render/film/adaptive.h"
 #include "render/parts/inputs.h"
@@ -77,6 +79,28 @@ std::array<std::array<double, 4>, 3> to_double_rows(const Transform& t) {
   return rows;
 }
 
+/// Adds the matrices of pbrt-v4's EXR files, for column vectors: world to camera space, of a moving camera at the start
+/// of its motion, and to normalized device coordinates, if the camera projects to a plane. There x and y are 0 to 1
+/// along the shorter axis of the film.
+void add_matrices(const SceneSettings& description, const Scene& scene, ImageFormat& image) {
+  const auto set = [&image](const char* name, const Projection::Matrix& m) {
+    for (size_t i = 0; i < 16; ++i) image.matrices[name][i] = float(m[i / 4][i % 4]);
+  };
+  Projection::Matrix view{}, ndc{};
+  std::ranges::copy(description.camera_from_world.start.precise.rows(), view.begin());
+  view[3] = {0, 0, 0, 1};
+  set("worldToCamera", view);
+  const auto* projection = dynamic_cast<const Projection*>(&scene.camera());
+  if (!projection) return;
+  const Projection::Matrix screen = projection->screen_from_camera();
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t j = 0; j < 4; ++j)
+      for (size_t k = 0; k < 4; ++k) ndc[i][j] += screen[i][k] * view[k][j];
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 4; ++j) ndc[i][j] = (ndc[i][j] + ndc[3][j]) / 2;
+  set("worldToNDC", ndc);
+}
+
 /// Adds an attribute with the name of each material; its number is the value in the channel `material`.
 void name_materials(const SceneSettings& description, ImageFormat& image) {
   for (size_t i = 0; i < description.materials.size(); ++i) {
@@ -99,6 +123,8 @@ ImageFormat image_format_of(const SceneSettings& description, const ImageRequest
   ImageFormat image{.space = space_of(description, request, scene.wavelengths().film_space()),
                     .bands = {bands.begin(), bands.end()},
                     .attributes = request.attributes};
+  if (film.buckets > 0) image.bands = bucket_bands(film.buckets, film.buckets_nm);
+  add_matrices(description, scene, image);
   const Vec3d& origin = scene.origin();
   if (film.features_in_camera_space) {
     const SceneTransform& view = description.camera_from_world.start;
@@ -272,15 +298,15 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
         fmt::format("{:.3f}", format.splatting->correlated_pixels);
   loaded.description_ = std::move(description);
   const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
-  format.bands = wavelengths.bands().size();
+  format.bands = loaded.image_format_.bands.size();
   format.halves = request.adaptive;
-  if (const std::string_view color = format.channels.color(); format.bands > 0 && !color.empty())
+  if (const std::string_view color = format.channels.color(); !format.has_colors() && !color.empty())
     fail({}, "channel \"{}\" is a colour: with wavelengths \"{}\" the film has bands, not colours", color,
          loaded.scene_->wavelengths_name());
-  if (request.adaptive && format.bands > 0)
+  if (request.adaptive && !format.has_colors())
     fail({}, "a noise target needs a film of colours: with wavelengths \"{}\" the film has bands",
          loaded.scene_->wavelengths_name());
-  if (format.bands == 0) {
+  if (format.has_colors()) {
     format.color = matrix_of(wavelengths.film_space(), loaded.image_format_.space);
     format.white = white_of(wavelengths, format.color);
   }

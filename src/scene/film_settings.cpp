@@ -24,6 +24,9 @@ void check_film(const FilmSettings& film, const FilmInfo& info, const Location& 
   if (!(std::isfinite(film.exposure) && film.exposure >= 0 && film.max_component >= 0))
     fail(where, "film \"{}\" has the exposure {} and clamps at {}: neither can be below 0", info.name, film.exposure,
          film.max_component);
+  if (film.buckets < 0 || (film.buckets > 0 && !(film.buckets_nm.min < film.buckets_nm.max)))
+    fail(where, "film \"{}\" has {} spectral channels from {} to {} nm: the range is empty", info.name, film.buckets,
+         film.buckets_nm.min, film.buckets_nm.max);
 }
 
 /// Returns the times at which a camera's shutter opens and closes, in s; 0 and 1 for cameras without one.
@@ -74,6 +77,7 @@ FilmSettings Scene::film_settings(const SceneSettings& description, const Regist
   FilmSettings film =
       make_checked(info, description.film.where, [&] { return info.make(Params(info, description.film, resolver)); });
   check_film(film, info, description.film.where);
+  fit_buckets(description, registry, film, log);
   const Interval open = open_times(description, registry, resolver);
   film.exposure *= open.max - open.min;
   warn_of_open_time(description, open.max - open.min, log);

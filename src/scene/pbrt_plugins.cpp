@@ -48,7 +48,6 @@ constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
 constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
 constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
-constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};
 
 /// Materials of pbrt-v3 and older.
 constexpr std::string_view kOldMaterials[] = {"matte",     "plastic",    "uber",        "glass",   "mirror",
@@ -231,7 +230,7 @@ void translate_pbrt_plugins(SceneDescription& description, const Registry& regis
   const bool is_realistic = d.camera.name == "realistic";
   if (translator.translate("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
     problems.attempt([&] { set_field_of_view(d.camera, d.film); });
-  translator.translate("Film", registry.films, kFilms, kOldFilms, d.film);
+  translator.translate("Film", registry.films, {}, kOldFilms, d.film);
   for (MaterialDescription& m : d.materials)
     translator.translate("Material", registry.materials, {}, kOldMaterials, m.plugin);
   for (TextureDescription& t : d.textures) {

@@ -7,7 +7,7 @@
 namespace frond {
 
 extern const CameraInfo perspective_camera, orthographic_camera, spherical_camera, distant_camera;
-extern const FilmInfo rgb_film, gbuffer_film;
+extern const FilmInfo rgb_film, gbuffer_film, spectral_film;
 extern const SamplerInfo independent_sampler, lattice_sampler;
 extern const FilterInfo box_filter, triangle_filter, gaussian_filter, mitchell_filter, sinc_filter;
 extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_shape, cylinder_shape,
@@ -27,7 +27,7 @@ extern const MediumInfo homogeneous_medium, uniform_grid_medium, rgb_grid_medium
 namespace {
 
 constexpr std::array kCameras{&perspective_camera, &orthographic_camera, &spherical_camera, &distant_camera};
-constexpr std::array kFilms{&rgb_film, &gbuffer_film};
+constexpr std::array kFilms{&rgb_film, &gbuffer_film, &spectral_film};
 constexpr std::array kSamplers{&lattice_sampler, &independent_sampler};
 constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &mitchell_filter, &sinc_filter};
 constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape,         &sphere_shape,

@@ -21,8 +21,14 @@ struct CameraSampling;
 /// Returns the wavelength strategy of the description's options, with its parameters. Throws InputError.
 ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry& registry);
 
-/// Returns the wavelength strategy object. Throws InputError.
-std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry);
+/// Returns the wavelength strategy object, with the sensor of the film and the wavelengths of its buckets. Warns of
+/// what has no effect on it. Throws InputError.
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry,
+                                                     const Log& log = silent_log());
+
+/// Sets the film's buckets to 0, with a warning, if the scene's wavelengths are of a strategy that does not sample
+/// them. Throws InputError if they do not reach all buckets.
+void fit_buckets(const SceneSettings& description, const Registry& registry, FilmSettings& film, const Log& log);
 
 /// Lights of a surface: one for the whole surface, or one for each primitive.
 struct SurfaceLights {

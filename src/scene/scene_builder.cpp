@@ -17,40 +17,6 @@
 #include "textures/normal_map.h"
 
 namespace frond {
-namespace {
-
-/// Returns the film's sensor parameters, which weight wavelengths instead of the eye's response.
-std::vector<ParsedParam> sensor_params(const SceneSettings& description) {
-  using Values = decltype(ParsedParam::values);
-  std::vector<ParsedParam> params;
-  for (const ParsedParam& p : description.film.params)
-    if ((p.name == "sensor" && p.values != Values(std::vector<std::string>{"cie1931"})) ||
-        (p.name == "whitebalance" && p.values != Values(std::vector<double>{0})))
-      params.push_back(p);
-  return params;
-}
-
-/// Parses the parameters of a wavelength strategy with the types of its declaration.
-ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {
-  const PluginText choice = parse_plugin_text(text, where);
-  ParsedPlugin plugin{choice.name, where, {}};
-  set_params(choice, registry.wavelengths.get(choice.name, where), where, plugin);
-  return plugin;
-}
-
-/// Creates the strategy of a PluginText with the film's sensor.
-std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const SceneSettings& description, const Registry& registry) {
-  OptionResolver resolver(description);
-  ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
-  const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
-  for (const ParsedParam& p : sensor_params(description))
-    if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
-  return make_checked(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
-}
-
-}  // namespace
-
 /// Builds the scene from the description in order of dependency. After an error it continues with independent objects,
 /// and throws all errors together.
 class SceneBuilder {
@@ -228,14 +194,8 @@ class SceneBuilder {
     filters_textures_ = options.filters_textures;
     seed_ = options.seed;
     period_ = options.period, period_where_ = options.period_where;
-    const std::string& text = options.wavelengths;
-    const Location& where = options.wavelengths_where;
-    scene_.wavelengths_name_ = text;
-    scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
-    const WavelengthsInfo& info = registry_.wavelengths.get(parse_plugin_text(text, where).name, where);
-    for (const ParsedParam& of_film : sensor_params(description_))
-      if (!find_param(info, of_film.name))
-        log_.warn(of_film.where, fmt::format("\"{}\" has no effect on wavelengths \"{}\"", of_film.name, info.name));
+    scene_.wavelengths_name_ = options.wavelengths;
+    scene_.wavelengths_ = make_wavelengths(description_, registry_, log_);
   }
 
   /// Throws InputError for lights at finite positions in a periodic scene, because they would have to be repeated.
@@ -469,16 +429,6 @@ void LightTable::add(std::unique_ptr<Light> light, const Location& at) {
   where.push_back(at);
   if (const auto* surrounding = dynamic_cast<const EnvironmentLight*>(light.get())) environment.push_back(surrounding);
   owned.push_back(std::move(light));
-}
-
-ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry& registry) {
-  const SceneOptions options = read_options(description);
-  return wavelengths_plugin(options.wavelengths, options.wavelengths_where, registry);
-}
-
-std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry) {
-  const SceneOptions options = read_options(description);
-  return make_wavelengths(options.wavelengths, options.wavelengths_where, description, registry);
 }
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,

@@ -11,6 +11,7 @@
 #include "spectra/wavelengths/registry.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
+#include "tests/support/parsed_params.h"
 
 namespace frond {
 namespace {
@@ -122,7 +123,26 @@ void expect_xyz(const WavelengthStrategy& strategy, const Spectrum& s) {
   }
 }
 
+/// Samples whose u are in n intervals have 4n wavelengths in as many intervals.
+TEST(Hero, UniformSamplesCoverTheRangeEvenly) {
+  const auto hero = make("hero", {test::number("float", "lambdamin", {400}), test::number("float", "lambdamax", {2400}),
+                                  test::flag("uniform", true)});
+  std::array<int, 20> counts{};
+  for (int i = 0; i < 5; ++i) {
+    const SampledWavelengths lambda = hero->sample_for_index(0, (float(i) + 0.3f) / 5);
+    EXPECT_EQ(lambda.hero, -1);
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      EXPECT_FLOAT_EQ(lambda.pdf[lane], 1 / 2000.f);
+      ++counts[size_t((lambda.nm[lane] - 400) / 100)];
+    }
+  }
+  EXPECT_THAT(counts, ::testing::Each(1));
+}
+
 TEST(Hero, EstimatesTheColorOfD65) { expect_xyz(*make("hero"), *unit_d65()); }
+TEST(Hero, EstimatesTheSameColorFromUniformSamples) {
+  expect_xyz(*make("hero", {test::flag("uniform", true)}), *unit_d65());
+}
 TEST(Hero, EstimatesTheSameColorFromAWiderRange) {
   // Blackbody light beyond 830 nm must add nothing.
   const auto warm = unit_luminance(std::make_shared<BlackbodySpectrum>(2856));

@@ -10,7 +10,7 @@ ErrorTail error_tail(const Film& film) {
   constexpr size_t kLeast = 10000;
   const Crop& crop = film.settings().crop;
   const size_t count = size_t(crop.width()) * size_t(crop.height());
-  if (film.bands() > 0 || count < kLeast) return {};
+  if (!film.format().has_colors() || count < kLeast) return {};
   std::vector<double> variances;
   variances.reserve(count);
   for (int y = crop.y0; y < crop.y1; ++y)

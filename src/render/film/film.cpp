@@ -7,6 +7,8 @@
 #include <map>
 
 #include "core/error.h"
+#include "spectra/analytic.h"
+#include "spectra/cie.h"
 #include "system/machine.h"
 
 namespace frond {
@@ -41,6 +43,7 @@ Film::Film(const FilmFormat& format, const Location& where)
       first_row_(floor_to_tile(format.sampled().y0)),
       columns_(floor_to_tile(format.sampled().x1 - 1) - first_column_ + 1),
       unit_(std::ldexp(1.0, format.exponent)),
+      band_unit_(unit_ * (format.has_buckets() ? photometric(ConstantSpectrum(1)) / format.bucket_exposure() : 1)),
       locks_(std::make_unique<std::array<std::mutex, kLocks>>()) {
   check_memory(format, 1, where, "--crop renders a part");
   const Crop& crop = format.sampled();
@@ -256,10 +259,10 @@ double Film::own_weight(int x, int y, size_t band) const {
 double Film::band(int x, int y, size_t band) const {
   if (format_.splatting) {
     const Gathered all = gathered(x, y, band);
-    return all.weight > 0 ? unit_ * (all.sum[0] / all.weight) : 0;
+    return all.weight > 0 ? band_unit_ * (all.sum[0] / all.weight) : 0;
   }
   const double weight = own_weight(x, y, band);
-  return weight == 0 ? 0 : unit_ * tiles_[tile_at(x, y)].band(x, y, band).sum.value() / weight;
+  return weight == 0 ? 0 : band_unit_ * tiles_[tile_at(x, y)].band(x, y, band).sum.value() / weight;
 }
 
 Film::BandMean Film::band_mean(int x, int y, size_t band) const {
@@ -268,8 +271,8 @@ Film::BandMean Film::band_mean(int x, int y, size_t band) const {
     const Gathered all = gathered(x, y, band);
     if (all.weight <= 0) return {};
     const double mean = all.sum[0] / all.weight;
-    return {unit_ * mean,
-            unit_ * unit_ *
+    return {band_unit_ * mean,
+            band_unit_ * band_unit_ *
                 splatted_variance(x, y, mean, all.weight,
                                   [band](const FilmTile& tile, int px, int py) {
                                     const FilmTile::BandSums& own = tile.band(px, py, band);
@@ -279,8 +282,19 @@ Film::BandMean Film::band_mean(int x, int y, size_t band) const {
   }
   const double weight = own_weight(x, y, band);
   if (weight == 0) return {};
-  return {unit_ * b.sum.value() / weight,
-          unit_ * unit_ * variance_of_mean(b.sum.value(), b.square.value(), double(b.samples), weight), b.samples};
+  return {band_unit_ * b.sum.value() / weight,
+          band_unit_ * band_unit_ * variance_of_mean(b.sum.value(), b.square.value(), double(b.samples), weight),
+          b.samples};
+}
+
+uint64_t Film::unsampled() const {
+  uint64_t count = 0;
+  const Crop& c = settings().crop;
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x)
+      for (size_t b = 0; b < bands(); ++b)
+        count += (format_.splatting ? gathered(x, y, b).weight : own_weight(x, y, b)) <= 0 ? 1 : 0;
+  return count;
 }
 
 Film::FeatureMeans Film::features(int x, int y) const {
@@ -331,6 +345,18 @@ uint64_t Film::not_finite() const {
       for (int x = c.x0; x < c.x1; ++x) count += tile.pixel(x, y).not_finite;
   }
   return count;
+}
+
+std::string unsampled_text(const Film& film) {
+  if (!film.format().has_buckets()) return {};
+  const uint64_t missing = film.unsampled();
+  const Crop& crop = film.settings().crop;
+  const double all = double(crop.width()) * double(crop.height()) * double(film.bands());
+  if (missing == 0) return {};
+  return fmt::format(
+      "{:.2g} % of the values of the spectral channels are 0 because no sample has their wavelengths: "
+      "take more samples, or fewer channels",
+      100 * double(missing) / all);
 }
 
 void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice) {

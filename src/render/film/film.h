@@ -74,6 +74,8 @@ class Film {
   BandMean band_mean(int x, int y, size_t band) const;
   /// The mean of band_mean alone, at a much lower cost.
   double band(int x, int y, size_t band) const;
+  /// Number of pairs of a pixel and a band that no sample has reached: their mean is 0.
+  uint64_t unsampled() const;
   /// Values of the additional channels: means over the samples with a hit, and ids; 0 if there is no hit.
   struct FeatureMeans {
     std::array<double, kMostMeans> means{};
@@ -121,11 +123,14 @@ class Film {
 
   FilmFormat format_;
   int first_column_, first_row_, columns_;
-  double unit_;
+  double unit_, band_unit_;  ///< units of the sums of colours and of bands
   std::vector<FilmTile> tiles_;
   static constexpr size_t kLocks = 64;
   std::unique_ptr<std::array<std::mutex, kLocks>> locks_;  ///< tile i uses lock i % kLocks
 };
+
+/// Message about buckets of pixels that no sample has reached; empty if there are none.
+std::string unsampled_text(const Film& film);
 
 /// Throws an InputError at `where` if so many films, and the images made from them, need more memory than the machine
 /// has. (Linux grants the allocation and terminates the process when it uses the memory.) `advice` ends the message.

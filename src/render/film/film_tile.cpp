@@ -34,12 +34,20 @@ double finite_term(double value) {
 class Exposure {
  public:
   explicit Exposure(const FilmFormat& format)
-      : has_colors_(format.bands == 0),
+      : has_colors_(format.has_colors()),
         exposure_(format.settings.exposure),
         most_(format.settings.max_component),
         unit_(format.settings.exposure * power_of_two(-format.exponent)) {
     for (size_t c = 0; c < 3; ++c)
       columns_[c] = Double4{format.color.row[0][c], format.color.row[1][c], format.color.row[2][c], 0};
+  }
+
+  /// That of buckets: the limit applies to the radiance.
+  static Exposure of_buckets(const FilmFormat& format) {
+    Exposure exposure(format);
+    exposure.has_colors_ = false, exposure.exposure_ = 1;
+    exposure.unit_ = format.bucket_exposure() * power_of_two(-format.exponent);
+    return exposure;
   }
 
   /// Returns false if the value was not finite or was clamped to kBrightest.
@@ -182,6 +190,7 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
   assert(at < pixels_.size());
   Pixel& pixel = pixels_[at];
   const Exposure exposure(format);
+  const bool has_colors = format.has_colors();
   DoubleSums modest;
   std::array<SplatSample, kAtOnce> splats;
   size_t splat_count = 0;
@@ -192,9 +201,8 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
     pixel.leaf += sample.leaf ? 1 : 0;
     pixel.not_finite += is_kept ? 0 : 1;
     ++pixel.samples;
-    if (band_count_ > 0) {
-      add_bands(at, sample.sensor, value);
-      if (kernel) add_band_splats(x, y, sample.sensor, value, kernel->at(sample.place));
+    if (!has_colors) {
+      add_bands(x, y, sample, value, kernel);
       continue;
     }
     if (!modest.add(value)) {
@@ -209,14 +217,26 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
   if (kernel) add_splats(x, y, *kernel, std::span(splats).first(splat_count));
 }
 
-void FilmTile::add_bands(size_t at, const SensorResponse& sensor, const Double4& value) {
+void FilmTile::add_buckets(const FilmFormat& format, int x, int y, std::span<const Sample> samples,
+                           const SplatKernel* kernel) {
+  const Exposure exposure = Exposure::of_buckets(format);
+  for (const Sample& sample : samples) {
+    Double4 value;
+    exposure.expose(sample, value);  // `add` counts values that are not finite
+    add_bands(x, y, sample, value, kernel);
+  }
+}
+
+void FilmTile::add_bands(int x, int y, const Sample& sample, const Double4& value, const SplatKernel* kernel) {
+  const SensorResponse& sensor = sample.sensor;
   for (size_t i = 0; i < size_t(sensor.count); ++i) {
     assert(sensor.channel[i] < band_count_);
-    BandSums& band = bands_[at * band_count_ + sensor.channel[i]];
+    BandSums& band = bands_[index(x, y) * band_count_ + sensor.channel[i]];
     band.sum.add(value[i]);
     band.square.add(value[i] * value[i]);
     ++band.samples;
   }
+  if (kernel) add_band_splats(x, y, sensor, value, kernel->at(sample.place));
 }
 
 /// Calls each(index, column, row) for all pixels of the image that samples of the pixel (x, y) reach. Column and row

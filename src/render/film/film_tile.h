@@ -19,7 +19,7 @@ namespace frond {
 /// Contents of a film and its units.
 struct FilmFormat {
   FilmSettings settings;
-  size_t bands = 0;           ///< number of spectral bands; 0: the film has three colours
+  size_t bands = 0;           ///< number of spectral bands or buckets; 0: the film has three colours alone
   ChannelList channels = {};  ///< additional channels, from the first hits of camera rays
   bool halves = false;        ///< the film has sums over the first half of its samples, from which noise is estimated
   /// Sums are in units of 2^exponent, which is close to the image's typical value. In these units, values of samples
@@ -30,6 +30,11 @@ struct FilmFormat {
   Triple white = {1, 1, 1};                 ///< mean film colours of paths of radiance 1: the colours of an albedo of 1
   std::optional<Splatting> splatting = {};  ///< empty: each sample counts in one pixel
 
+  /// Whether the film has buckets (FilmSettings::buckets), in place of bands, and whether it has colours.
+  bool has_buckets() const { return bands > 0 && settings.buckets > 0; }
+  bool has_colors() const { return bands == 0 || has_buckets(); }
+  /// Exposure of the sums of buckets, which keeps them near those of colours. The image's buckets have none.
+  double bucket_exposure() const { return settings.exposure > 0 ? settings.exposure : 1; }
   /// Pixels whose samples are taken.
   const Crop& sampled() const { return splatting ? splatting->sampled : settings.crop; }
 };
@@ -110,6 +115,9 @@ class FilmTile {
   /// must be set with splatting; then all weights must be 1.
   void add(const FilmFormat& format, int x, int y, std::span<const Sample> samples,
            const SplatKernel* kernel = nullptr);
+  /// For a film with buckets: adds the radiance of a pixel's samples, by bucket, to those for which `add` is called
+  /// with the same `kernel`.
+  void add_buckets(const FilmFormat& format, int x, int y, std::span<const Sample> samples, const SplatKernel* kernel);
   /// Adds the values of additional channels for one sample.
   void add(int x, int y, const Features& features);
   /// Adds the surfaces that the samples of a pixel hit to the lists of mattes. `kernel` as for samples.
@@ -170,7 +178,7 @@ class FilmTile {
   struct SplatSample;
   void add_splats(int x, int y, const SplatKernel& kernel, std::span<SplatSample> samples);
   void add_splats(int x, int y, const SplatSums& sums);
-  void add_bands(size_t at, const SensorResponse& sensor, const Double4& value);
+  void add_bands(int x, int y, const Sample& sample, const Double4& value, const SplatKernel* kernel);
   void add_band_splats(int x, int y, const SensorResponse& sensor, const Double4& exposed,
                        const SplatKernel::Weights& weights);
   template <class Each>

@@ -15,11 +15,10 @@ class PixelWriter {
  public:
   PixelWriter(const Film& film, const ImageFormat& format)
       : film_(film), format_(format), largest_(film.settings().largest_value()) {
-    if (!format.space.empty()) {
-      names_ = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"};
-    } else {
-      for (const Band& band : format.bands) names_.push_back(spectral_channel(band));
-      for (const Band& band : format.bands) names_.push_back(variance_channel(band));
+    if (!format.space.empty()) names_ = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"};
+    for (const Band& band : format.bands) names_.push_back(spectral_channel(band));
+    for (const Band& band : format.bands) names_.push_back(variance_channel(band));
+    if (format.space.empty()) {
       names_.emplace_back("leaf");
       preview_ = xyz_of_bands(format.bands);
       if (!preview_.empty()) names_.insert(names_.end(), {"R", "G", "B"});
@@ -38,10 +37,8 @@ class PixelWriter {
 
   void write(int x, int y, float* to) {
     to_ = to;
-    if (format_.space.empty())
-      write_bands(x, y);
-    else
-      write_colors(x, y);
+    if (!format_.space.empty()) write_colors(x, y);
+    write_bands(x, y);
     write_channels(x, y);
   }
   void write_image(int x, int y, float* to) {
@@ -80,6 +77,7 @@ class PixelWriter {
       add_band(b, m.mean, xyz);
     }
     to_ += count;
+    if (!format_.space.empty()) return;  // write_colors has written the rest
     append(film_.leaf_fraction(x, y));
     if (!preview_.empty()) append_preview(xyz);
   }

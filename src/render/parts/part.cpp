@@ -133,6 +133,7 @@ ImageFormat finished_format(const RenderPart& part) {
   const bool even = count.least == count.most;
   image.attributes["frond:samples"] =
       even ? fmt::format("{}", count.most) : fmt::format("{} to {}", count.least, count.most);
+  if (even) image.samples = int(count.most);
   if (part.film.format().halves)
     image.attributes["frond:noise_rms"] = fmt::format("{:.6f}", image_noise(part.film, 0).rms());
   size_t list = 0;

@@ -160,6 +160,7 @@ Json json_of(const FilmFormat& f) {
           {"exposure", s.exposure},
           {"max_component", std::isinf(s.max_component) ? Json() : Json(s.max_component)},  // JSON has no infinity
           {"bands", f.bands},
+          {"buckets_nm", f.has_buckets() ? Json{s.buckets_nm.min, s.buckets_nm.max} : Json()},
           {"channels", f.channels.names()},
           {"means", f.channels.means()},
           {"ids", f.channels.ids()},
@@ -173,11 +174,12 @@ FilmFormat film_format_of(const Json& j) {
   FilmFormat f;
   FilmSettings& s = f.settings;
   s.width = integer_of(j.at("width"), kMostPixels), s.height = integer_of(j.at("height"), kMostPixels);
-  s.crop = crop_of(j.at("crop"));
-  s.half = j.at("half"), s.exposure = j.at("exposure");
+  s.crop = crop_of(j.at("crop")), s.half = j.at("half"), s.exposure = j.at("exposure");
   const Json& most = j.at("max_component");
   s.max_component = most.is_null() ? std::numeric_limits<double>::infinity() : most.get<double>();
-  f.bands = integer_of(j.at("bands"), kMostBands),
+  f.bands = integer_of(j.at("bands"), kMostBands);
+  if (const Json nm = j.value("buckets_nm", Json()); !nm.is_null())
+    s.buckets = int(f.bands), s.buckets_nm = {nm.at(0), nm.at(1)};
   f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()), f.halves = j.at("halves");
   const Json& exponent = j.at("exponent");
   if (!exponent.is_number_integer() || std::abs(exponent.get<double>()) > kMostExponent) reject(exponent, "exponent");
@@ -219,6 +221,7 @@ std::string header_text(const PartHeader& h, const FilmFormat& film) {
                  {"bands", json_of(h.image.bands)},
                  {"from_world", h.image.from_world},
                  {"attributes", h.image.attributes},
+                 {"matrices", h.image.matrices},
                  {"materials", h.image.names.materials},
                  {"objects", h.image.names.objects}}},
                {"command", h.command},
@@ -236,14 +239,13 @@ PartHeader header_of(const Json& j) {
   PartHeader h;
   for (const Json& field : j.at("identity")) h.identity.add(field.at(0), field.at(1));
   const Json& image = j.at("image");
-  h.image.space = image.at("space");
-  h.image.bands = bands_of(image.at("bands"));
+  h.image.space = image.at("space"), h.image.bands = bands_of(image.at("bands"));
   h.image.from_world = image.at("from_world").get<decltype(h.image.from_world)>();
   h.image.attributes = image.at("attributes").get<std::map<std::string, std::string>>();
+  h.image.matrices = image.value("matrices", decltype(h.image.matrices)());
   h.image.names.materials = image.value("materials", decltype(h.image.names.materials)());
   h.image.names.objects = image.value("objects", decltype(h.image.names.objects)());
-  h.command = j.at("command");
-  h.scene_crop = crop_of(j.at("scene_crop"));
+  h.command = j.at("command"), h.scene_crop = crop_of(j.at("scene_crop"));
   h.pixel_scale = integer_of(j.at("pixel_scale"), 2);
   h.request = integer_of<uint64_t>(j.at("request")), h.adaptive = j.at("adaptive");
   h.round = integer_of(j.at("round"), kMostRounds);

@@ -42,7 +42,11 @@ constexpr Param kFluorescence{.name = "fluorescence",
                               .doc =
                                   "Add the fluorescence of leaves to the light that they reflect "
                                   "(docs/fluorescence.md); the wavelengths must reach from 400 to 750 nm."};
-constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance, kFluorescence};
+constexpr Param kUniform{.name = "uniform",
+                         .kind = ParamKind::boolean,
+                         .default_value = false,
+                         .doc = "Sample all wavelengths with the same density; the scene's Film \"spectral\" sets it."};
+constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance, kFluorescence, kUniform};
 
 /// Density proportional to 1 / cosh^2(0.0072 (nm - 538)), close to the eye's response (Radziszewski et al. 2009); over
 /// 360 to 830 nm the constant factor is 0.0039398042. Its integral is a difference of tanh, which is inverted.
@@ -94,7 +98,10 @@ std::optional<FilmSensor> sensor_of(const Params& p) {
 class Hero final : public WavelengthStrategy, public FluorescenceColors {
  public:
   explicit Hero(const Params& p)
-      : density_(range_of(p)), film_(sensor_of(p)), adds_fluorescence_(p.boolean("fluorescence")) {
+      : density_(range_of(p)),
+        film_(sensor_of(p)),
+        adds_fluorescence_(p.boolean("fluorescence")),
+        is_uniform_(p.boolean("uniform")) {
     const Interval nm = density_.range_nm();
     if (adds_fluorescence_ && !(nm.contains(kExcitation_nm.min) && nm.contains(kExcitation_nm.max)))
       fail(p.where("fluorescence"), "fluorescence is excited from {} to {} nm, the wavelengths reach from {} to {} nm",
@@ -102,6 +109,7 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
   }
 
   SampledWavelengths sample(float u) const override {
+    if (is_uniform_) return uniform_sample(u);
     SampledWavelengths lambda;
     lambda.count = kLanes;
     for (size_t i = 0; i < kLanes; ++i) {
@@ -117,7 +125,7 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
   /// The first lane is where `u` is: it has the stratification of the sampler, which a lane drawn by a BSDF would lose.
   SampledWavelengths sample_for_index(uint64_t, float u) const override {
     SampledWavelengths lambda = sample(u);
-    lambda.hero = 0;
+    lambda.hero = is_uniform_ ? int8_t(-1) : int8_t(0);
     return lambda;
   }
   Interval range_nm() const override { return density_.range_nm(); }
@@ -135,9 +143,23 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
   bool adds_fluorescence() const override { return adds_fluorescence_; }
 
  private:
+  /// One wavelength in each quarter of the range: n samples whose u are in n equal intervals have 4n wavelengths in 4n
+  /// equal intervals, so that few samples cover narrow buckets. No lane has the distribution of all.
+  SampledWavelengths uniform_sample(float u) const {
+    const Interval nm = density_.range_nm();
+    SampledWavelengths lambda;
+    lambda.count = kLanes;
+    for (size_t i = 0; i < kLanes; ++i) {
+      lambda.nm[i] = static_cast<float>(std::lerp(nm.min, nm.max, (double(u) + double(i)) / kLanes));
+      lambda.pdf[i] = static_cast<float>(1 / (nm.max - nm.min));
+      lambda.active[i] = true;
+    }
+    return lambda;
+  }
+
   VisibleDensity density_;
   std::optional<FilmSensor> film_;
-  bool adds_fluorescence_;
+  bool adds_fluorescence_, is_uniform_;
 };
 
 }  // namespace
