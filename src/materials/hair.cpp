@@ -13,7 +13,7 @@ namespace {
 
 constexpr Param kHair[] = {
     {.name = "sigma_a",
-     .kind = ParamKind::unbounded,
+     .kind = ParamKind::spectrum_texture,
      .unit = "1/radius",
      .range = kAtLeastZero,
      .doc = "Absorption coefficient (natural logarithm) inside the fibre, times its radius."},
@@ -99,9 +99,8 @@ class Hair final : public Material {
         p.warn(name, fmt::format("\"{}\" has no effect beside \"{}\", as in pbrt-v4", name, source_));
     where_ = p.where(source_);
     is_color_ = source_ == "reflectance" || source_ == "color";
-    absorption_ = is_color_              ? p.spectrum_texture(source_)
-                  : source_ == "sigma_a" ? std::make_shared<ConstantSpectrumTexture>(p.spectrum(source_))
-                                         : std::shared_ptr<const SpectrumTexture>(std::make_shared<Melanin>(p));
+    const bool is_melanin = source_.empty() || source_.ends_with("melanin");
+    absorption_ = is_melanin ? std::make_shared<Melanin>(p) : p.spectrum_texture(source_);
   }
 
   void prepare(const Preparation& preparation) override {
