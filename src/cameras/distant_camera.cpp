@@ -7,10 +7,11 @@
 namespace frond {
 namespace {
 
-/// Distant radiometer: each column of the film is a direction; all columns see the same rectangle.
+/// Distant radiometer: each column of the film is a direction; all columns see the same rectangle, of which each row
+/// sees one cell of a grid.
 class DistantCamera final : public Camera {
  public:
-  /// Throws InputError unless the film has one column for each direction.
+  /// Throws InputError unless the film has one column for each direction, and as many rows of each cell of the grid.
   DistantCamera(const Params& p, const CameraPlacement& placement) : world_from_camera_(placement.world_from_camera) {
     const std::vector<double> zenith = p.reals("zenith"), azimuth = p.reals("azimuth"), target = p.reals("target");
     if (target.size() != 5)
@@ -28,15 +29,23 @@ class DistantCamera final : public Camera {
       const double phi = azimuth.empty() ? 0 : azimuth[azimuth.size() == 1 ? 0 : i];
       toward_.push_back(direction(zenith[i] * kDegree, phi * kDegree));
     }
+    std::vector<int> strata = p.integers("strata");
+    if (strata.empty()) strata = {1, 1};
+    if (strata.size() != 2) fail(p.where("strata"), "\"strata\" takes 2 values, {} given", strata.size());
+    if (placement.height % (strata[0] * strata[1]) != 0)
+      fail(p.where("strata"), "\"yresolution\", {}, is not a multiple of the {} x {} \"strata\"", placement.height,
+           strata[0], strata[1]);
+    for (int i = 0; i < strata[0] * strata[1]; ++i) cells_.push_back({float(i % strata[0]), float(i / strata[0])});
     corner_ = {float(target[0]), float(target[2]), float(target[4])};
-    size_ = {float(target[1] - target[0]), float(target[3] - target[2])};
+    size_ = {float((target[1] - target[0]) / strata[0]), float((target[3] - target[2]) / strata[1])};
     distance_ = float(p.real("distance"));
   }
 
   /// The point on the target is a lens sample, so that it is stratified independently of the pixel position.
   Ray ray(Vec2 film, Vec2 lens) const override {
     const auto column = size_t(std::clamp(film.x, 0.f, float(toward_.size() - 1)));
-    const Vec3 on_target = corner_ + Vec3{lens.x * size_.x, lens.y * size_.y, 0};
+    const Vec2 cell = cells_[size_t(std::max(film.y, 0.f)) % cells_.size()];
+    const Vec3 on_target = corner_ + Vec3{(cell.x + lens.x) * size_.x, (cell.y + lens.y) * size_.y, 0};
     const Vec3& toward = toward_[column];
     return {world_from_camera_.point(on_target + toward * distance_),
             normalize_any(world_from_camera_.vector(-toward))};
@@ -58,7 +67,8 @@ class DistantCamera final : public Camera {
   Transform world_from_camera_;
   std::vector<Vec3> toward_;  ///< from the target to the sensor, unit
   Vec3 corner_;               ///< corner of the target with the smallest x and y, camera space
-  Vec2 size_;                 ///< extent of the target along x and y
+  Vec2 size_;                 ///< extent of a cell along x and y
+  std::vector<Vec2> cells_;   ///< of the target, that of a row by the row modulo their number: indices along x and y
   float distance_;            ///< from the target to the ray origins, along the direction
 };
 
@@ -81,6 +91,13 @@ constexpr Param kDistant[] = {
      .doc = "Rectangle that is seen, x0 x1 y0 y1 z; sampled uniformly.",
      .list = true,
      .required = true},
+    {.name = "strata",
+     .kind = ParamKind::integer,
+     .range = {1, 1024},
+     .doc =
+         "Numbers of cells along x and y into which the target is divided; each row of the film sees one of them, in "
+         "turn. By default 1 and 1.",
+     .list = true},
     {.name = "distance",
      .kind = ParamKind::real,
      .default_value = 0.0,

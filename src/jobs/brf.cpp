@@ -42,7 +42,7 @@ constexpr JobParam kParams[] = {
     kPeriodParam,
     JobParam(
         "paths", count,
-        "Number of paths for each view, rounded up to a multiple of 32; at least 32 for each wavelength are traced.",
+        "Number of paths for each view, rounded up to a multiple of 128; at least 128 for each wavelength are traced.",
         {.default_value = "65536", .range = {1, 4294967296}}),
     rms_param(
         "Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below "
@@ -126,8 +126,8 @@ RenderPart merged_parts(const JobRun& run, const BrfMeter& meter, uint64_t sampl
 /// Returns nullopt if the measurement was stopped. `resume_file` may be nullptr.
 std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, const BrfMeter& meter,
                                       const ResumeFile* resume_file) {
-  // A refinement starts with few samples and doubles them; each band needs at least one sample.
-  constexpr uint64_t kFirst = 64;
+  // A refinement starts with few samples; each band needs at least one sample.
+  constexpr uint64_t kFirst = 16;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
   const bool refines = run.args.given("rms");
   const auto paths = uint64_t(run.args.count("paths"));

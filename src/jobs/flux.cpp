@@ -103,7 +103,7 @@ constexpr JobParam kParams[] = {
     kResumeParam,
 };
 
-/// Whether the paths are doubled until an error is small enough, and are not a fixed number.
+/// Whether paths are added until an error is small enough, and are not a fixed number.
 bool has_error_limit(const Arguments& args) { return args.given("rms") || args.given("instance-error"); }
 
 /// Returns the kind that --by names.
@@ -129,7 +129,7 @@ double largest_relative_error(const JobRun& run, const FluxMeasurement& measurem
   return std::max(largest, errors.median / run.args.real("instance-error"));
 }
 
-/// Returns the number of paths, of a refinement the first one, which is then doubled.
+/// Returns the number of paths, of a refinement the first one.
 uint64_t path_count(const JobRun& run, const FluxMeter& meter) {
   constexpr uint64_t kFirst = 1 << 16;
   // As in the BRF, each band needs some paths for its standard error.

@@ -76,7 +76,7 @@ std::optional<std::array<double, 2>> sun_of(const Arguments& args) {
 
 /// Returns nullopt if the measurement was stopped.
 std::optional<StructureMeasurement> measure(const JobRun& run, const RenderControl& control, StructureMeter& meter) {
-  // A refinement starts with few rays and doubles them.
+  // A refinement starts with few rays.
   constexpr uint64_t kFirst = 1 << 14;
   const bool refines = run.args.given("rms");
   const RefineLimits limits{refines ? kFirst : uint64_t(run.args.count("rays")), uint64_t{1} << 40,

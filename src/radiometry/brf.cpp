@@ -23,6 +23,15 @@ double absolute_azimuth_deg(const ViewDirection& view, const std::optional<Vec3>
   return away + view.azimuth_deg;
 }
 
+/// Returns the numbers of cells along x and y that divide the target into kCells cells, as square as possible.
+std::vector<double> cells_of(const Target& target) {
+  double along_x = 1;
+  while (along_x < BrfMeter::kCells &&
+         (target.x1 - target.x0) / along_x > (target.y1 - target.y0) * 2 * along_x / BrfMeter::kCells)
+    along_x *= 2;
+  return {along_x, BrfMeter::kCells / along_x};
+}
+
 ParsedPlugin camera_of(const BrfRequest& request, const Target& target, const Scene& scene,
                        const std::optional<Vec3>& sun) {
   std::vector<double> zenith, azimuth;
@@ -37,7 +46,7 @@ ParsedPlugin camera_of(const BrfRequest& request, const Target& target, const Sc
           {},
           {parsed_numbers("float", "zenith", zenith), parsed_numbers("float", "azimuth", azimuth),
            parsed_numbers("float", "target", {target.x0, target.x1, target.y0, target.y1, target.z}),
-           parsed_numbers("float", "distance", {distance})}};
+           parsed_numbers("integer", "strata", cells_of(target)), parsed_numbers("float", "distance", {distance})}};
 }
 
 std::string text_of(const std::vector<ViewDirection>& views) {
@@ -62,6 +71,13 @@ bool has_heavy_tails(const Scene& scene, size_t materials) {
 }
 
 }  // namespace
+
+double error_of_rows(std::span<const double> rows) {
+  double squares = 0;
+  for (size_t cell = 0; cell < BrfMeter::kCells; ++cell)
+    squares += std::pow(rows[cell] - rows[cell + BrfMeter::kCells], 2);
+  return std::sqrt(squares) / BrfMeter::kRows;
+}
 
 double BrfMeasurement::relative_error() const {
   double sum = 0;
@@ -126,14 +142,12 @@ BrfMeasurement BrfMeter::read(const Film& film) const {
   measurement.bands.assign(bands.begin(), bands.end());
   for (int view = 0; view < film.settings().width; ++view)
     for (size_t band = 0; band < film.bands(); ++band) {
-      double sum = 0, squares = 0;
+      double sum = 0;
       for (int row = 0; row < kRows; ++row) {
-        const double value = film.band_mean(view, row, band).mean / white_[band];
-        measurement.rows.push_back(value);
-        sum += value, squares += value * value;
+        measurement.rows.push_back(film.band_mean(view, row, band).mean / white_[band]);
+        sum += measurement.rows.back();
       }
-      const double mean = sum / kRows, variance = std::max(0.0, squares / kRows - mean * mean) / (kRows - 1);
-      measurement.values.push_back({mean, std::sqrt(variance)});
+      measurement.values.push_back({sum / kRows, error_of_rows(std::span(measurement.rows).last(kRows))});
     }
   for (int row = 0; row < kRows; ++row) measurement.paths += film.samples(0, row);
   return measurement;

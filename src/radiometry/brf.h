@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core/wavelengths.h"
@@ -50,11 +51,15 @@ struct BrfMeasurement {
   double relative_error() const;
 };
 
-/// Renders a scene as a distant radiometer sees it. The film has a column for each view and kRows independent rows;
-/// their differences estimate the error, including the stratification within a row.
+/// Returns the standard error of a mean over BrfMeter::kRows rows, from the differences of the two rows of each cell.
+double error_of_rows(std::span<const double> rows);
+
+/// Renders a scene as a distant radiometer sees it. The film has a column for each view and kRows independent rows. The
+/// target is divided into kCells cells, and two rows see each: their differences estimate the error, including the
+/// stratification over the target and within a row.
 class BrfMeter {
  public:
-  static constexpr int kRows = 32;
+  static constexpr int kRows = 128, kCells = kRows / 2;
 
   /// Throws InputError. Leaves without a stated incident direction become reciprocal, or take the light's direction as
   /// incident, so that energy is conserved.

@@ -21,12 +21,10 @@ std::vector<MeanError> relative_to(const BrfMeasurement& reference, const BrfMea
   std::vector<MeanError> differences;
   for (size_t i = 0; i < measurement.values.size(); ++i) {
     const double b = reference.values[i].mean, ratio = measurement.values[i].mean / b;
-    double squares = 0;
-    for (size_t row = 0; row < kRows; ++row) {
-      const double rest = (measurement.rows[i * kRows + row] - ratio * reference.rows[i * kRows + row]) / b;
-      squares += rest * rest;
-    }
-    differences.push_back({ratio - 1, std::sqrt(squares / (kRows * (kRows - 1)))});
+    std::array<double, kRows> rests;
+    for (size_t row = 0; row < kRows; ++row)
+      rests[row] = (measurement.rows[i * kRows + row] - ratio * reference.rows[i * kRows + row]) / b;
+    differences.push_back({ratio - 1, error_of_rows(rests)});
   }
   return differences;
 }
@@ -35,7 +33,7 @@ BrfVerdict check_agreement(const BrfMeasurement& reference, const BrfMeasurement
   constexpr double kRate = 0.05;
   const auto differences = relative_to(reference, measurement);
   const double z =
-      student_quantile(normal_upper_quantile(sidak_level(kRate, differences.size()) / 2), BrfMeter::kRows - 1);
+      student_quantile(normal_upper_quantile(sidak_level(kRate, differences.size()) / 2), BrfMeter::kCells);
   const auto upper = [z](const MeanError& d) { return std::abs(d.mean) + z * d.standard_error; };
   const auto worst = std::ranges::max_element(differences, {}, upper);
   const bool beyond = std::ranges::any_of(

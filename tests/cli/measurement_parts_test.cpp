@@ -69,7 +69,7 @@ class MeasurementParts : public CommandTest {
 };
 
 const Words kFlux{"flux", "--bands", "par,red=600:700", "--by", "mesh", "--paths", "9000"};
-const Words kBrf{"brf", "--zenith=0:30:30", "--wavelengths", "550,800", "--paths", "320"};
+const Words kBrf{"brf", "--zenith=0:30:30", "--wavelengths", "550,800", "--paths", "1280"};
 
 TEST_F(MeasurementParts, OfAFluxAddUpToTheLastBit) { expect_same_tables(kFlux, {"5000:9000", "0:10", "10:5000"}); }
 
@@ -77,13 +77,13 @@ TEST_F(MeasurementParts, OfADayHaveAllTimes) {
   expect_same_tables(joined(kFlux, {"--times", path("day.csv")}), {"3000:9000", "0:3000"});
 }
 
-TEST_F(MeasurementParts, OfABrfAddUpToTheLastBit) { expect_same_tables(kBrf, {"100:320", "10:100", "0:10"}); }
+TEST_F(MeasurementParts, OfABrfAddUpToTheLastBit) { expect_same_tables(kBrf, {"400:1280", "40:400", "0:40"}); }
 
 TEST_F(MeasurementParts, ThatDoNotFitAreNamed) {
   for (const Words& command : {kFlux, kBrf}) {
     SCOPED_TRACE(command[0]);
     const bool is_flux = command[0] == "flux";
-    const std::string end = is_flux ? "9000" : "320", middle = is_flux ? "4096" : "160";
+    const std::string end = is_flux ? "9000" : "1280", middle = is_flux ? "4096" : "640";
     ASSERT_EQ(part(command, "0:" + middle, "a.part", {"--resume"}).code, 0);
     ASSERT_EQ(part(command, middle + ":" + end, "b.part", {"--resume"}).code, 0);
     ASSERT_EQ(part(command, "0:" + end, "other.part", {"--seed", "7", "--resume"}).code, 0);

@@ -286,9 +286,10 @@ TEST_F(RadiometryByInstance, ContinuesUntilTheMedianErrorIsReached) {
   EXPECT_EQ(median({"--instance-error", "0.05"}).second, 65536);
   const auto [reached, paths] = median({"--instance-error", "2%"});
   EXPECT_LT(reached, 0.02);
-  EXPECT_GT(reached, 0.02 / 2);  // of half as many paths it is above 2 %
-  EXPECT_EQ(paths, 262144);
-  EXPECT_EQ(median({"--instance-error", "0.05", "--rms", "0.00009"}).second, 1 << 20);  // both
+  EXPECT_GT(reached, 0.018);  // of an eighth less paths it is above 2 %
+  EXPECT_GT(paths, 1 << 17);
+  EXPECT_LT(paths, 1 << 18);
+  EXPECT_GT(median({"--instance-error", "0.05", "--rms", "0.00009"}).second, 1 << 19);  // both
   EXPECT_THAT(measured(kSun, {"flux", "--instance-error", "0.05"}).err, HasSubstr("--instance-error needs --by"));
   EXPECT_THAT(measured(kSun, {"flux", "--by", "instance", "--instance-error", "5"}).err,
               HasSubstr("--instance-error: a number above 0, up to 1, or a share in percent, as in 2%,"));

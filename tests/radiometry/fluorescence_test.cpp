@@ -110,7 +110,7 @@ TEST_F(SceneFluorescence, ALambertianLeafHasTheRadianceOfItsMatrices) {
                                                         "Option \"string wavelengths\" \"bands,fluorescence=685\"\n"));
     const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm, ThreadPool(2));
     const std::vector<ViewDirection> views{{0, 0}, {-60, 0}, {45, 90}};
-    const BrfMeasurement measured = brf(light + kReplayed + square("leaf", 0), views, 64);
+    const BrfMeasurement measured = brf(light + kReplayed + square("leaf", 0), views, 16);
     for (size_t view = 0; view < views.size(); ++view)
       for (size_t band = 0; band < kEmission.size(); ++band) {
         // The environment lights the lower side as well.
@@ -139,7 +139,7 @@ TEST_F(SceneFluorescence, ALeafInTheSunHasTheRadianceOfItsOperator) {
   const SpectrumPtr irradiance = horizontal_irradiance(loaded.scene(), kExcitation_nm, ThreadPool(2));
   const Vec3 wi{-0.5f, 0, 0.8660254f};
   const std::vector<ViewDirection> views{{0, 0}, {-60, 0}, {45, 90}};
-  const BrfMeasurement measured = brf(kSun + kLeaf + square("leaf", 0), views, 256);
+  const BrfMeasurement measured = brf(kSun + kLeaf + square("leaf", 0), views, 64);
   RandomStream random(1);
   for (size_t view = 0; view < views.size(); ++view)
     for (size_t band = 0; band < kEmission.size(); ++band) {
@@ -174,7 +174,7 @@ TEST_F(SceneFluorescence, LightPathsAndCameraPathsAgree) {
         views.push_back({std::asin(std::sqrt(square_of_sine)) * 180 / std::numbers::pi, 45.0 * azimuth + 10});
         weights.push_back(weight * std::numbers::pi / 8);
       }
-    const BrfMeasurement seen = brf(light + leaves, views, 32);
+    const BrfMeasurement seen = brf(light + leaves, views, 8);
     const FluorescenceFluxMeasurement counted = flux(light + leaves, 100'000);
     for (size_t band = 0; band < kEmission.size(); ++band) {
       double photons = 0, variance = 0;

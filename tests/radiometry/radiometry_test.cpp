@@ -133,7 +133,7 @@ TEST_F(Radiometry, TheMediumOfTheCameraIsNotThatOfTheSensor) {
     const BrfMeter meter(session, description(world, mist + camera),
                          {.views = {{0, 0}, {60, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"});
     RenderPart part = meter.scene().empty_part();
-    session.render(meter.scene(), {0, 1024}, part);
+    session.render(meter.scene(), {0, 256}, part);
     return meter.read(part.film);
   };
   const BrfMeasurement outside = measured(""), inside = measured("MediumInterface \"mist\" Camera \"perspective\"\n");
@@ -221,7 +221,7 @@ TEST_F(Radiometry, TheAlbedoIsTheSameFromTheSunAndFromTheSensor) {
     for (int k = 0; k < kAzimuths; ++k)
       request.views.push_back(
           {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
-  const BrfMeasurement seen = brf(world, request, 16);
+  const BrfMeasurement seen = brf(world, request, 4);
   double sum = 0, variance = 0;
   for (const MeanError& v : seen.values) sum += v.mean, variance += v.standard_error * v.standard_error;
   const double albedo = sum / double(seen.values.size()), error = std::sqrt(variance) / double(seen.values.size());
@@ -243,7 +243,7 @@ TEST_F(Radiometry, TheAlbedoOfRealLeavesIsTheSameBothWays) {
     for (int k = 0; k < kAzimuths; ++k)
       request.views.push_back(
           {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
-  const BrfMeasurement seen = brf(world, request, 16);
+  const BrfMeasurement seen = brf(world, request, 4);
   const FluxMeasurement sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=550,800"}, 200000);
   for (size_t band = 0; band < 2; ++band) {
     double sum = 0, variance = 0;

@@ -122,7 +122,7 @@ class WeightedBands : public ::testing::Test {
     meter.trace(paths, session.pool());
     return meter.read();
   }
-  BrfMeasurement brf(const std::string& light, const std::string& wavelengths, uint64_t samples = 512) const {
+  BrfMeasurement brf(const std::string& light, const std::string& wavelengths, uint64_t samples = 128) const {
     Session session(silent_log(), {2, {}, {}});
     const BrfMeter meter(session, plane(light), {.views = {{0, 0}}, .wavelengths = wavelengths});
     RenderPart part = meter.scene().empty_part();

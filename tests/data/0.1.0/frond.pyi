@@ -137,7 +137,7 @@ def brf(scene: str | os.PathLike | Scene, wavelengths: float | Sequence[float] |
     hemisphere: Views of the whole hemisphere, every 5 degrees of zenith and 15 of azimuth. Excludes zenith, azimuth.
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
-    paths: Number of paths for each view, rounded up to a multiple of 32; at least 32 for each wavelength are traced. Range: from 1 to 4294967296. Default: 65536.
+    paths: Number of paths for each view, rounded up to a multiple of 128; at least 128 for each wavelength are traced. Range: from 1 to 4294967296. Default: 65536.
     rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
