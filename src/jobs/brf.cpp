@@ -127,7 +127,7 @@ RenderPart merged_parts(const JobRun& run, const BrfMeter& meter, uint64_t sampl
 std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, const BrfMeter& meter,
                                       const ResumeFile* resume_file) {
   // A refinement starts with few samples; each band needs at least one sample.
-  constexpr uint64_t kFirst = 16;
+  constexpr uint64_t kFirst = 8;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
   const bool refines = run.args.given("rms");
   const auto paths = uint64_t(run.args.count("paths"));
