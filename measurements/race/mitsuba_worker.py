@@ -14,55 +14,6 @@ import drjit as dr
 import mitsuba as mi
 
 
-def diffuse_leaf():
-    """Lambertian reflector and transmitter, which Mitsuba does not have. Not for scalar variants."""
-
-    class DiffuseLeaf(mi.BSDF):
-        def __init__(self, properties):
-            mi.BSDF.__init__(self, properties)
-            self.reflectance = properties["reflectance"]
-            self.transmittance = properties["transmittance"]
-            self.share = self.reflectance / (self.reflectance + self.transmittance)
-            sides = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
-            self.m_components = [mi.BSDFFlags.DiffuseReflection | sides, mi.BSDFFlags.DiffuseTransmission | sides]
-            self.m_flags = self.m_components[0] | self.m_components[1]
-
-        def value(self, wi, wo):
-            """f times the cosine, and the density of wo."""
-            cosine = dr.abs(wo.z) * dr.inv_pi
-            reflected = wi.z * wo.z > 0
-            return (dr.select(reflected, self.reflectance, self.transmittance) * cosine,
-                    dr.select(reflected, self.share, 1 - self.share) * cosine)
-
-        def sample(self, ctx, si, sample1, sample2, active):
-            wo = mi.warp.square_to_cosine_hemisphere(sample2)
-            reflected = sample1 < self.share
-            wo.z = dr.select(reflected == (si.wi.z > 0), wo.z, -wo.z)
-            sample = mi.BSDFSample3f()
-            sample.wo = wo
-            sample.pdf = self.value(si.wi, wo)[1]
-            sample.eta = 1
-            sample.sampled_type = dr.select(reflected, mi.UInt32(+mi.BSDFFlags.DiffuseReflection),
-                                            mi.UInt32(+mi.BSDFFlags.DiffuseTransmission))
-            sample.sampled_component = dr.select(reflected, mi.UInt32(0), mi.UInt32(1))
-            return sample, mi.Spectrum(self.reflectance + self.transmittance) & (active & (sample.pdf > 0))
-
-        def eval(self, ctx, si, wo, active):
-            return mi.Spectrum(self.value(si.wi, wo)[0]) & active
-
-        def pdf(self, ctx, si, wo, active):
-            return self.value(si.wi, wo)[1] & active
-
-        def eval_pdf(self, ctx, si, wo, active):
-            value, pdf = self.value(si.wi, wo)
-            return mi.Spectrum(value) & active, pdf & active
-
-        def to_string(self):
-            return "DiffuseLeaf"
-
-    return DiffuseLeaf
-
-
 def spectrum(value, light=False):
     if light:
         return {"type": "d65", "scale": value} if mi.is_spectral else {"type": "rgb", "value": value}
@@ -92,8 +43,8 @@ def load(scene, leaf=None, robust=False):
     two_sided = lambda value: {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": spectrum(value)}}
     reflectance, transmittance = scene["leaf"]
     if leaf is None and transmittance:
-        mi.register_bsdf("diffuse_leaf", diffuse_leaf())
-        leaf = {"type": "diffuse_leaf", "reflectance": reflectance, "transmittance": transmittance}
+        import frond.mitsuba  # registers a Lambertian reflector and transmitter, which Mitsuba lacks; not for scalar variants
+        leaf = {"type": "frond_diffuse", "reflectance": reflectance, "transmittance": transmittance}
     materials = {name: two_sided(value) for name, value in scene["grey"].items()} | {"leaf": leaf or two_sided(reflectance)}
     world = {"type": "scene", "embree_use_robust_intersections": robust,
              "integrator": {"type": "path", "max_depth": scene["depth"] + 1}}

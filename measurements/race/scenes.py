@@ -12,6 +12,7 @@ import re
 import numpy
 from scipy.spatial.transform import Rotation
 
+from ..shared import ply
 from ..shared.tools import ROOT, program
 
 # Reflectance of other surfaces; reflectance and transmittance of leaves. Grey materials give the same image with three
@@ -203,17 +204,7 @@ def numbers(values):
 def without_normals(path, folder):
     """A copy of a mesh with flat triangles. Programs, and so their images, differ for directions that are on different sides of
     the vertex normals and of the triangle's normal."""
-    head, body = path.read_bytes().split(b"end_header\n", 1)
-    lines = head.decode("ascii").splitlines()
-    first = next(i for i, line in enumerate(lines) if line.startswith("element vertex"))
-    last = next(i for i, line in enumerate(lines) if line.startswith("element face"))
-    names = [line.removeprefix("property float ") for line in lines[first + 1:last]]
-    values = numpy.frombuffer(body, "<f4", len(names) * int(lines[first].split()[2])).reshape(-1, len(names))
-    out = values[:, [name not in ("nx", "ny", "nz") for name in names]]
-    lines = [line for line in lines if line not in ("property float nx", "property float ny", "property float nz")]
-    copy = folder / path.name
-    copy.write_bytes("\n".join(lines + ["end_header", ""]).encode("ascii") + out.tobytes() + body[values.nbytes:])
-    return str(copy)
+    return ply.write(folder / path.name, *ply.read(path))
 
 
 def grey(value):
@@ -262,15 +253,6 @@ def write_pbrt(scene, path, leaf, box, size, tables=False):
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def write_ply(path, indices, points):
-    """Writes a mesh as an ASCII file, because Mitsuba loads meshes from files."""
-    lines = ["ply", "format ascii 1.0", f"element vertex {len(points) // 3}", "property float x", "property float y",
-             "property float z", f"element face {len(indices) // 3}", "property list uchar int vertex_indices", "end_header"]
-    lines += map(numbers, numpy.reshape(points, (-1, 3)))
-    lines += ["3 " + numbers(triangle) for triangle in numpy.reshape(indices, (-1, 3))]
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")
-
-
 def write_json(scene, path, leaf, size):
     """Writes a scene for mitsuba_worker.py."""
     document = dataclasses.asdict(scene) | {"grey": GREY, "leaf": LEAVES[leaf], "depth": DEPTH, "size": size,
@@ -283,7 +265,6 @@ def write_json(scene, path, leaf, size):
         if not shape["object"]:
             shape["to_world"] = larger @ shape["to_world"]
         if shape["kind"] == "trianglemesh":
-            mesh = path.with_name(f"{path.stem}-{i}.ply")
-            write_ply(mesh, shape["parameters"]["indices"], shape["parameters"]["P"])
-            shape |= {"kind": "plymesh", "parameters": {"filename": str(mesh)}}
+            points, triangles = (numpy.reshape(shape["parameters"][name], (-1, 3)) for name in ("P", "indices"))
+            shape |= {"kind": "plymesh", "parameters": {"filename": ply.write(path.with_name(f"{path.stem}-{i}.ply"), points, triangles)}}
     path.write_text(json.dumps(document, default=lambda matrix: matrix.ravel().tolist()), encoding="utf-8")

@@ -52,7 +52,7 @@ mesh = runner.canopy(FrondMeshTreeElement(id="leaf", mesh_filename="leaves.ply",
                      [SIDE, SIDE, HEIGHT])
 of_disks = f'ObjectBegin "leaf" Shape "disk" "float radius" {RADIUS} ObjectEnd Shape "instances" "string object" "leaf" "string filename" "leaves.npy"'
 for canopy, leaves in ((disks, of_disks), (mesh, 'Shape "plymesh" "string filename" "leaves.ply"')):
-    brf = numpy.array([runner.brf_of(canopy, SUN, ZENITH, TARGET, 300, seed, NM, 64)[0] for seed in range(1, 9)])
+    brf = numpy.array([runner.brf_of(canopy, SUN, ZENITH, TARGET, 150, seed, NM, 64)[0] for seed in range(1, 9)])
     open("canopy.pbrt", "w").write(head + leaves)
     ours = frond.brf("canopy.pbrt", NM, zenith=[-z for z in ZENITH], target=TARGET, rms=5e-3)["brf"]
     z = (brf.mean(axis=0) - numpy.reshape(ours, (len(ZENITH), -1))) / (brf.std(axis=0, ddof=1) / numpy.sqrt(len(brf)))
