@@ -40,6 +40,6 @@ apt_inside() {
 
 # readme_command TEXT: the command of README.md's section Install that contains TEXT, without its comment.
 readme_command() {
-  sed -n '/^```shell$/,/^```$/p' "$root/README.md" | sed -n "/$1/{s/ *#.*//p;q}" | grep . ||
+  sed -n '/^```shell$/,/^```$/p' "$root/README.md" | grep -F -m 1 -- "$1" | sed 's/ *#.*//' | grep . ||
     { echo "README.md has no command with \"$1\" in its section Install" >&2; exit 1; }
 }

@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import subprocess
 import sys
 import unittest
 
@@ -25,6 +26,10 @@ class Readme(unittest.TestCase):
             if command != "docker build -t frond .":  # whose steps scripts/container runs one by one
                 self.assertTrue(any(pattern in command for pattern in run), command)
         for pattern in run:
+            found = subprocess.run(["bash", "-c", f"root={ROOT}; source {ROOT}/scripts/bare_debian.sh; readme_command '{pattern}'"],
+                                   capture_output=True, text=True, check=True).stdout
+            self.assertIn(pattern, found)
+            self.assertNotIn("#", found)
             self.assertTrue(any(pattern in command for command in self.commands), pattern)
 
     def test_the_container_is_called_as_the_dockerfile_says(self):
