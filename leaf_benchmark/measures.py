@@ -49,15 +49,15 @@ def of_images(images, halves, leaf):
 
 
 def of_brf(values, halves, nm, views):
-    """Relative to the truth's mean of each wavelength, over the views: RMS error of one measurement; noise, from the difference of two;
-    bias by wavelength and of all; error of the mean over the views. If there is a row beyond the views: relative error of absorbed light."""
+    """Relative to the truth's mean of each wavelength, over the views: RMS error of one measurement; bias by wavelength and of all; error of
+    the mean over the views. If there is a row beyond the views: relative error of absorbed light."""
     result = {"absorbed": dict(zip(map(str, nm), (numpy.mean(values, axis=0)[views] / numpy.mean(halves, axis=0)[views] - 1).tolist()))} \
         if len(values[0]) > views else {}
     values, halves = (numpy.array([table[:views] for table in of]) for of in (values, halves))
     scale, whole = halves.mean(axis=(0, 1)), numpy.ones(views, bool)
     values, halves = values / scale, halves / scale
     return result | {
-        "rms": root(squared(values, halves).mean()), "noise": root(((values[0] - values[1])**2).mean() / 2),
+        "rms": root(squared(values, halves).mean()),
         "bias": {str(w): bias(values[..., i], halves[..., i], whole) for i, w in enumerate(nm)} | {"all": bias(values, halves, whole)},
         "mean": {str(w): float((values - halves)[..., i].mean()) for i, w in enumerate(nm)}}
 

@@ -78,11 +78,11 @@ def canopy_table(of):
     nm = [str(w) for w in task_json("canopy")["wavelengths_nm"]]
 
     def cells(result):
-        last, absorbed = result["points"][-1], result.get("absorbed")
+        absorbed, paths = result.get("absorbed"), result["points"][-1]["samples"] * len(task_json("canopy")["view_zenith"])
         return [percent(result["bias"]["all"]), *(f"{percent(result['bias'][w])}, {100 * result['mean'][w]:+.1f} %" for w in nm),
                 ", ".join(f"{100 * absorbed[w]:+.1f}" for w in nm) if absorbed else "–",
-                f"{last['cpu_s'] * (result['noise'] / 0.01)**2:.2g}" if "noise" in result else ""]
-    return ranked(of, "canopy", ["bias of BRF", *(f"{w} nm: bias, mean" for w in nm), f"absorbed at {', '.join(nm)} nm, %", "CPU s to 1 %"], cells)
+                f"{1e6 * result['points'][-1]['cpu_s'] / paths:.1f} µs"]
+    return ranked(of, "canopy", ["bias of BRF", *(f"{w} nm: bias, mean" for w in nm), f"absorbed at {', '.join(nm)} nm, %", "CPU of a path"], cells)
 
 
 def leaf_table(of):
@@ -181,7 +181,7 @@ def write_csv(of):
                 row("rms", samples=point["samples"], cpu_s=point["cpu_s"], value=point["rms"])
             for color, (value, low, high) in result.get("bias", {}).items():
                 row(f"bias {color}", value=value, low=low, high=high)
-            for quantity in ("median", "largest", "flip", "noise", "setup_s", "cpu_s"):
+            for quantity in ("median", "largest", "flip", "setup_s", "cpu_s"):
                 if quantity in result:
                     row(quantity, value=result[quantity])
             for check in result.get("checks", []):
