@@ -83,7 +83,7 @@ Vec3 direction(double theta, double phi) {
   return {float(std::sin(theta)), float(std::cos(theta) * std::cos(phi)), float(std::cos(theta) * std::sin(phi))};
 }
 
-constexpr double kThetas[] = {0.1, -0.8, 1.3};
+constexpr double kElevations[] = {0.1, -0.8, 1.3};
 
 TEST(Hair, FollowsItsFormulas) {
   RandomStream numbers(1), rng(2);
@@ -110,7 +110,7 @@ TEST(Hair, ScattersTheShareThatItDoesNotAbsorb) {
   for (const Fiber& fiber : kFibers) {
     Ready ready = fiber.ready();
     const Bsdf& bsdf = ready.bsdf({0, float(fiber.v)});
-    for (const double theta_o : kThetas) {
+    for (const double theta_o : kElevations) {
       const Vec3 wo = direction(theta_o, 0.7);
       double scattered = 0, density = 0;
       for (int i = 0; i < kSteps; ++i)
@@ -140,7 +140,7 @@ TEST(Hair, SamplesItsDensity) {
   for (const Fiber& fiber : kFibers) {
     Ready ready = fiber.ready();
     const Bsdf& bsdf = ready.bsdf({0, float(fiber.v)});
-    for (const double theta_o : kThetas) {
+    for (const double theta_o : kElevations) {
       const Vec3 wo = direction(theta_o, -2);
       std::vector<double> observed(kRows * kColumns), expected(kRows * kColumns);
       for (int i = 0; i < kRows * kFine; ++i)
