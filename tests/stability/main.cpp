@@ -13,11 +13,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: frond_stability [--markdown]\n");
     return 2;
   }
-  const std::vector<Theme> themes{incidence(),   ends_of_ranges(), outside_ranges(), absorption(),
-                                  indices(),     dispersion(),     directions(),     table_files(),
-                                  instruments(), tails(),          scenes(),         skies(),
-                                  media(),       measured(),       hair(),           subsurface(),
-                                  fluorescence()};
+  const std::vector<Theme> themes{incidence(),  ends_of_ranges(), outside_ranges(), absorption(),  indices(),
+                                  dispersion(), directions(),     table_files(),    instruments(), tails(),
+                                  scenes(),     skies(),          media(),          measured(),    hair(),
+                                  subsurface(), fluorescence()};
   fmt::print("{}", markdown ? to_markdown(themes) : to_text(themes));
   const std::vector<std::string> list = surprises(themes);
   for (const std::string& line : list) fmt::print(stderr, "UNEXPECTED: {}\n", line);
