@@ -29,11 +29,13 @@ def bias(images, halves, leaf):
     """RMS of what no number of samples removes, over leaf pixels, with its 95 % interval; `[pixel]` or `[pixel][color]`.
 
     The mean of products of two independent differences has no contribution of noise. Its variance follows from the differences of the two
-    renders; it is that of other seeds, because the pixels are all that there are."""
+    renders; it is that of other seeds, because the pixels are all that there are. The colours of a pixel, of the same paths, are taken as
+    fully correlated."""
     (a, b), (r, s) = (tuple(image[leaf] for image in pair) for pair in (images, halves))
     square = ((a - r) * (b - s) + (a - s) * (b - r)) / 2
     noise, mean = ((a - b)**2 + (r - s)**2) / 2, (a + b - r - s) / 2
-    error = numpy.sqrt((2 * mean**2 * noise).sum()) / square.size  # the mean's own noise contributes the noise's square
+    deviation = numpy.sqrt(2 * mean**2 * noise)  # the mean's own noise contributes the noise's square
+    error = numpy.linalg.norm(deviation.reshape(len(deviation), -1).sum(axis=1)) / square.size
     return [root(square.mean()), root(square.mean() - 1.96 * error), root(max(0, square.mean()) + 1.96 * error)]
 
 
