@@ -129,11 +129,11 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
   // A refinement starts with few samples; each band needs at least one sample.
   constexpr uint64_t kFirst = 8;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
-  const bool refines = run.args.given("rms");
+  const bool refines = run.args.given("rms"), compares = run.args.given("compare");
   const auto paths = uint64_t(run.args.count("paths"));
   const RefineLimits limits{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
                             uint64_t{1} << 32, run.args.real("rms")};
-  if (run.args.given("merge")) return meter.read(merged_parts(run, meter, limits.amount).film);
+  if (run.args.given("merge")) return meter.read(merged_parts(run, meter, limits.amount).film, compares);
   RenderPart part = first_part(run, meter, resume_file);
   std::optional<Checkpointer> checkpointer;
   if (resume_file) {
@@ -154,14 +154,14 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
         if (!writes_part) range.end = samples;
         if (!range.empty()) run.session().render(meter.scene(), range, part, control);
       },
-      [&] { return measurement.emplace(meter.read(part.film)).relative_error(); });
+      [&] { return measurement.emplace(meter.read(part.film, compares)).relative_error(); });
   checkpointer.reset();
   if (resume_file) resume_file->keep(end != RefineEnd::stopped, writes_part, write);
   if (end == RefineEnd::stopped || writes_part) return {};
   if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
     fail(scene_file(run.args), "{}: the time limit ended before every direction was measured",
          run.args.spelled("time-limit"));
-  return meter.read(part.film);
+  return meter.read(part.film, compares);
 }
 
 /// Returns the column of the quantity: "brf" or "hdrf".

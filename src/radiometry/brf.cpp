@@ -115,6 +115,7 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
                        parsed_numbers("integer", "yresolution", {double(kRows)})}};
   scene_ = session.load(std::move(description),
                         {.command = measurement_text(text_of(request.views), request.target, request.period)}, &scene);
+  check_memory(scene_.film_format(), 1, {}, "measure fewer views or wavelengths at a time");
   has_heavy_tails_ = has_heavy_tails(scene, scene_.description().materials.size());
   if (has_heavy_tails_)
     session.log().warn(
@@ -132,7 +133,7 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
   }
 }
 
-BrfMeasurement BrfMeter::read(const Film& film) const {
+BrfMeasurement BrfMeter::read(const Film& film, bool with_rows) const {
   BrfMeasurement measurement{.views = request_.views, .bands = {}, .values = {}, .rows = {}};
   measurement.has_heavy_tails = has_heavy_tails_;
   if (is_hemispherical_) measurement.quantity = "HDRF";
@@ -143,11 +144,11 @@ BrfMeasurement BrfMeter::read(const Film& film) const {
   for (int view = 0; view < film.settings().width; ++view)
     for (size_t band = 0; band < film.bands(); ++band) {
       double sum = 0;
-      for (int row = 0; row < kRows; ++row) {
-        measurement.rows.push_back(film.band_mean(view, row, band).mean / white_[band]);
-        sum += measurement.rows.back();
-      }
-      measurement.values.push_back({sum / kRows, error_of_rows(std::span(measurement.rows).last(kRows))});
+      std::array<double, kRows> rows;
+      for (int row = 0; row < kRows; ++row)
+        sum += rows[size_t(row)] = film.band_mean(view, row, band).mean / white_[band];
+      measurement.values.push_back({sum / kRows, error_of_rows(rows)});
+      if (with_rows) measurement.rows.insert(measurement.rows.end(), rows.begin(), rows.end());
     }
   for (int row = 0; row < kRows; ++row) measurement.paths += film.samples(0, row);
   return measurement;

@@ -38,7 +38,7 @@ struct BrfMeasurement {
   std::vector<ViewDirection> views;
   std::vector<Band> bands;
   std::vector<MeanError> values;  ///< by view, then band: reflectance factor, or radiance of fluorescence
-  std::vector<double> rows;       ///< for each value, BrfMeter::kRows independent estimates
+  std::vector<double> rows;       ///< for each value, BrfMeter::kRows independent estimates; may be empty
   uint64_t paths = 0;             ///< for each view
   /// Name of the quantity: "BRF" (bidirectional) if all light comes from one direction, else "HDRF"
   /// (hemispherical-directional), as under sun and sky.
@@ -67,8 +67,8 @@ class BrfMeter {
   BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other = nullptr);
 
   const LoadedScene& scene() const { return scene_; }
-  /// Returns the measurement from a film of the scene.
-  BrfMeasurement read(const Film& film) const;
+  /// Returns the measurement from a film of the scene. Only a comparison needs `rows`: 1 KiB for each value.
+  BrfMeasurement read(const Film& film, bool with_rows = true) const;
 
  private:
   BrfRequest request_;

@@ -222,6 +222,21 @@ class Radiometers(FrondTest):
                 self.csv.unlink()
                 self.part.unlink()
 
+    def test_a_refinement_goes_on_from_its_checkpoint(self):
+        words = ("brf", "--rms", "0.00005")
+        expected, _ = self.run_to_end(self.command(*words, "--csv", "-", "-q"))
+        kept = self.command(*words, "--csv", self.csv, "--checkpoint", 0.05, "--resume")
+        process = self.start(kept)
+        self.wait_for(self.part.exists, "a checkpoint")
+        process.send_signal(signal.SIGTERM)
+        process.communicate()
+        self.assertEqual(process.returncode, 143)  # not at its end
+        before = part_header(self.part)["statistics"]["paths"]
+        self.assertGreater(before, 0)
+        self.run_to_end(kept)
+        self.assertGreater(part_header(self.part)["statistics"]["paths"], before)
+        self.assertEqual(self.csv.read_text(encoding="utf-8"), expected)
+
     def test_do_not_mix_measurements(self):
         for name, other in (("brf", ("--zenith", 10)), ("flux", ("--seed", 3)), ("flux", ("--by", "instance"))):
             with self.subTest(name=name, other=other):
