@@ -190,6 +190,8 @@ def scene_of(kind, name, lines):
     """All of the scene, and the samples of a pixel."""
     front, world, things, samples = VIEW + FILM, LIGHT, FLOOR, SAMPLES
     if kind == "material":
+        if name == "hair":
+            front += 'Integrator "path" "integer maxdepth" 50\n'  # its colour is that of many scatterings
         things += "AttributeBegin\n" + lines + "\n" + (LEAFLET if name.startswith(("leaf", "abm")) else TUFT if name == "hair" else BALL) + "AttributeEnd\n"
     elif kind == "spectrum texture":
         things += lines + '\nMaterial "diffuse" "texture reflectance" "pattern"\n' + BALL
