@@ -15,6 +15,7 @@ rendered again are kept.
   --pbrt PATH                  the pbrt program
   --mitsuba PYTHON             a Python with mitsuba
   --no-docs                    prints the section, writes no page
+  --convergence                instead: error against time of hair, subsurface and Film "spectral", frond and pbrt-v4, and a chart; 10 minutes
 """
 
 import argparse
@@ -22,12 +23,13 @@ import json
 import os
 import pathlib
 import platform
+import shutil
 import tempfile
 
 import numpy
 
 from ..shared.tools import ROOT, machine, write_section
-from . import luminance, page, programs, scenes
+from . import convergence, luminance, page, programs, scenes
 
 DOCUMENT = ROOT / "docs" / "performance.md"
 FIGURES = ROOT / "build" / "race" / "figures.json"
@@ -47,7 +49,7 @@ def arguments():
         parser.add_argument(f"--{name}", type=int, metavar="N")
     parser.add_argument("--pbrt", metavar="PATH")
     parser.add_argument("--mitsuba", metavar="PYTHON")
-    for name in ("--quick", "--no-docs"):
+    for name in ("--quick", "--no-docs", "--convergence"):
         parser.add_argument(name, action="store_true")
     options = parser.parse_args()
     options.no_docs |= options.quick  # few samples are no figures for the page
@@ -94,6 +96,9 @@ def figures(program, reconstruction, base, costs, own, reference, setting):
 
 def main():
     setting = options = arguments()
+    if options.convergence:
+        text = convergence.main(options.pbrt or shutil.which("pbrt"), FIGURES.parent)
+        return write_section(DOCUMENT, "race_convergence", text, "race")
     running, missing = programs.present(options.pbrt, options.mitsuba)
     for text in missing:
         print(f"Left out: {text}", flush=True)
