@@ -160,7 +160,7 @@ def about(of):
     shared = sorted({f"{e['program']} with {p['samples']} samples in `{t}`" for e in of.values() for t, r in e["tasks"].items()
                      for p in r.get("points", []) if p.get("core") != "reserved"})
     counts, changes = repeated(of)
-    text = (f"Measured by `leaf_benchmark/run` on {', '.join(machines)}, {' to '.join(dict.fromkeys([dates[0], dates[-1]]))}: "
+    text = (f"Measured by `python -m leaf_benchmark`, which `leaf_benchmark/run` starts, on {', '.join(machines)}, {' to '.join(dict.fromkeys([dates[0], dates[-1]]))}: "
             f"{', '.join(f'{name} {number}' for name, number in versions.items())}. Each entry ran on one core that was reserved by real-time "
             "priority (`--core`); the machine's other core had other work.")
     if shared:
