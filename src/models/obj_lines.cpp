@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <stdexcept>
 
 namespace frond {
 namespace {
@@ -19,6 +20,8 @@ std::string_view trimmed(std::string_view text) {
 ObjLines::ObjLines(std::string_view text, bool is_continued) : rest_(text), is_continued_(is_continued) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
+    throw std::runtime_error("it is UTF-16 text: save it as UTF-8");
 }
 
 std::string_view ObjLines::take_line() {

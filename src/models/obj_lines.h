@@ -21,7 +21,7 @@ struct ObjStatement {
 class ObjLines {
  public:
   /// A backslash at the end continues a line on the next one if `is_continued`: not in MTL files, whose paths may end
-  /// with one.
+  /// with one. Throws std::runtime_error for UTF-16.
   ObjLines(std::string_view text, bool is_continued);
   /// Returns the next statement, whose text is valid until the next call; nothing at the end.
   std::optional<ObjStatement> next();

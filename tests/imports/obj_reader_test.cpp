@@ -71,6 +71,13 @@ TEST(ObjReader, FacesThatAreNoneAreNamed) {
   EXPECT_EQ(refusal_of_obj(kTriangle), "it has no triangles");
 }
 
+TEST(ObjReader, Utf16IsNamed) {
+  const std::string utf16("\xff\xfe" "v\0 \0", 6);
+  EXPECT_EQ(refusal_of_obj(utf16), "it is UTF-16 text: save it as UTF-8");
+  EXPECT_THAT(read_obj(kMaterial, utf16).warnings,
+              ElementsAre("\"a.mtl\" is not read: it is UTF-16 text: save it as UTF-8"));
+}
+
 TEST(ObjReader, VerticesThatAreNoneAreErrors) {
   EXPECT_EQ(refusal_of_obj("v 0 0\n"), "line 1: \"v\" needs 3 numbers, it has 2");
   EXPECT_EQ(refusal_of_obj("v 0 0 0\nv 0 0 x\n"), "line 2: \"x\" is no number");
