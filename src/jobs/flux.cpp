@@ -129,13 +129,14 @@ double largest_relative_error(const JobRun& run, const FluxMeasurement& measurem
   return std::max(largest, errors.median / run.args.real("instance-error"));
 }
 
-/// Returns the number of paths, of a refinement the first one.
+/// Returns the number of paths, which is even; of a refinement the first one.
 uint64_t path_count(const JobRun& run, const FluxMeter& meter) {
   constexpr uint64_t kFirst = 1 << 16;
   // As in the BRF, each band needs some paths for its standard error.
   constexpr uint64_t kLeast = 32;
-  return std::max(kLeast * meter.scene().wavelengths().bands().size(),
-                  has_error_limit(run.args) ? kFirst : uint64_t(run.args.count("paths")));
+  const uint64_t paths = std::max(kLeast * meter.scene().wavelengths().bands().size(),
+                                  has_error_limit(run.args) ? kFirst : uint64_t(run.args.count("paths")));
+  return paths + paths % 2;
 }
 
 /// Returns nullopt if the measurement was stopped.

@@ -105,7 +105,8 @@ class FluorescenceFluxMeter::Block {
   }
   /// Adds to the sums of instances, which have no block of their own: once the block counts.
   void add_organs() {
-    for (const auto& [instance, quantity, share] : of_instances_) state_.by_instance->add(instance, quantity, share);
+    for (const auto& [instance, quantity, share] : of_instances_)
+      state_.by_instance->add(instance, quantity, {share, share * share});
     of_instances_ = {};
   }
 
@@ -126,8 +127,7 @@ class FluorescenceFluxMeter::Block {
   void trace_path(uint64_t key, RandomStream& random) {
     const Target& t = state_.target;
     const SampledWavelengths lambda = state_.excitation.sample(random.uniform());
-    const Vec2 u{random.uniform(), random.uniform()};
-    const auto light = state_.light.sample(random, lambda);
+    const auto light = state_.light.sample(Stratum().sample(random), random, lambda);
     if (!light) return;
     // Photons that the lanes stand for, relative to all incident ones.
     SampledSpectrum photons;
@@ -137,7 +137,7 @@ class FluorescenceFluxMeter::Block {
           light->weight[e] * state_.irradiance->at(nm) * float(double(nm) / kPhotonEnergy / state_.incident) / density;
     }
     if (photons.is_black()) return;
-    const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
+    const Vec3d on_target{std::lerp(t.x0, t.x1, light->place[0]), std::lerp(t.y0, t.y1, light->place[1]), t.z};
     const Vec3d d = to_double(light->direction);
     const Scene& scene = state_.scene();
     const Ray ray{to_float(on_target - d * distance_above(scene, t, -d.z) - scene.origin()), light->direction};

@@ -9,6 +9,7 @@
 #include "radiometry/flux_sums.h"
 #include "radiometry/incident_light.h"
 #include "radiometry/lit_bands.h"
+#include "radiometry/path_pairs.h"
 #include "radiometry/photons.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
@@ -50,22 +51,9 @@ std::string text_of(const FluxRequest& request) {
   return text;
 }
 
-/// Channels of an organ in a band, where direct and diffuse light, energy and photons are apart.
-enum OrganChannel : size_t {
-  kOrganDirect,
-  kOrganDiffuse,
-  kOrganPhotons,
-  kOrganIncident,
-  kOrganIncidentPhotons,
-  kOrganChannels
-};
-
-/// Factor on incident light in these sums: light that white surfaces return again and again would exceed their range.
-constexpr double kIncidentScale = 0x1p-8;
-
 /// Returns a mean of an organ; its error is NaN if no path was absorbed.
 MeanError organ_mean(const Moment& moment, uint64_t paths) {
-  MeanError mean = moment.mean(paths);
+  MeanError mean = moment.mean_of_pairs(paths);
   if (moment.sum == 0) mean.standard_error = NAN;
   return mean;
 }
@@ -90,6 +78,9 @@ struct FluxMeter::State {
   Interval optics_nm = {};               ///< of the scene's responses
   LeafArea leaf_area = {};
   uint64_t begin = 0, end = 0;  ///< numbers of the paths that have been traced
+  /// Number of pairs of paths after which their bands repeat. Each turn has strata of its own, so that they are
+  /// complete for each band.
+  uint64_t turns = 1;
 
   size_t quantities() const {
     const size_t of_materials = kFirstOfMaterials + materials * kQuantitiesOfMaterial;
@@ -119,18 +110,24 @@ class FluxMeter::Block {
       : moments(state.quantities() * state.channels.count()),
         seen(state.bands),
         state_(state),
-        shares_(state.quantities()) {}
+        paths_{Path(state.quantities()), Path(state.quantities())} {}
 
-  /// Throws SurfaceError.
+  /// Traces pairs of paths. Both numbers are even. Throws SurfaceError.
   void trace(uint64_t first, uint64_t count) {
     constexpr uint64_t kPolled = 16;  // paths
-    for (uint64_t i = first; i < first + count; ++i) {
+    const uint64_t seed = state_.scene().seed();
+    for (uint64_t i = first; i < first + count; i += 2) {
       if (i % kPolled == 0) check_stop();
-      RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
-      const SampledWavelengths lambda = state_.wavelengths.sample_for_index(i, random.uniform());
-      shares_.clear();
-      trace_path(lambda, hash_key(state_.scene().seed(), uint64_t{kKeys}, i), random);
-      add_shares(lambda);
+      const uint64_t pair = i / 2, turn = pair % state_.turns;
+      const Stratum stratum = stratum_of(pair / state_.turns, hash_key(seed, uint64_t{kStrata}, turn));
+      for (uint64_t member = 0; member < 2; ++member) {
+        RandomStream random(hash_key(seed, uint64_t{kStream}, i + member));
+        Path& path = paths_[member];
+        path.lambda = state_.wavelengths.sample_for_index(pair, random.uniform());
+        path.shares.clear();
+        trace_path(path, stratum.sample(random), hash_key(seed, uint64_t{kKeys}, i + member), random);
+      }
+      add_pair();
     }
   }
   /// Adds to the sums of organs, which have no block of their own: once the block counts.
@@ -144,17 +141,26 @@ class FluxMeter::Block {
 
  private:
   /// Uses of the scene's seed.
-  enum SeedUse : uint64_t { kStream = 0x666c7578, kKeys };
+  enum SeedUse : uint64_t { kStream = 0x666c7578, kKeys, kStrata };
 
-  /// Traces light until it is absorbed or leaves the scene.
-  void trace_path(SampledWavelengths lambda, uint64_t key, RandomStream& random) {
-    const Vec2 u{random.uniform(), random.uniform()};
-    const auto light = state_.light.sample(random, lambda);
+  /// Light of one path, as shares of the incident light.
+  struct Path {
+    explicit Path(size_t quantities) : shares(quantities) {}
+    FluxShares shares;
+    SampledWavelengths lambda = {};
+    bool is_direct = false;  ///< where the light came from
+  };
+
+  /// Traces light until it is absorbed or leaves the scene. `place`: uniform, for the place where it begins.
+  void trace_path(Path& path, const UnitPoint& place, uint64_t key, RandomStream& random) {
+    SampledWavelengths lambda = path.lambda;
+    FluxShares& shares = path.shares;
+    const auto light = state_.light.sample(place, random, lambda);
     if (!light) return;
-    is_direct_ = light->is_direct;
+    path.is_direct = light->is_direct;
     if (state_.channels.splits) state_.limit_to_optics(lambda);
     const Vec3d d = to_double(light->direction);
-    const auto [entry, weight] = state_.entry.sample(d, u, random);
+    const auto [entry, weight] = state_.entry.sample(d, light->place);
     const Scene& scene = state_.scene();
     const Target at_entry{.x0 = 0, .x1 = 0, .y0 = 0, .y1 = 0, .z = entry.z};
     Ray ray{
@@ -171,7 +177,7 @@ class FluxMeter::Block {
       GeometryHit met;
       const VertexKey at = vertex_key(key, uint64_t(vertex));
       if (!scene.intersect(ray, at.key(Use::ray), point, met))
-        return shares_.add_end(ray.d.z > 0 ? kReflected : kTransmitted, share);
+        return shares.add_end(ray.d.z > 0 ? kReflected : kTransmitted, share);
       arena_.reset();
       Scattered scattered;
       if (!scatter_light(point, lambda, ray.d, random, arena_, scattered)) {
@@ -179,11 +185,12 @@ class FluxMeter::Block {
         continue;
       }
       const uint64_t organ = state_.organs ? state_.organs->number(met) : 0;
-      shares_.add(flux_quantity(point.material_id, kIncident), share);
-      if (depth++ == 0) shares_.add(flux_quantity(point.material_id, kUncollided), share);
+      shares.add(flux_quantity(point.material_id, kIncident), share);
+      if (depth++ == 0) shares.add(flux_quantity(point.material_id, kUncollided), share);
       const SampledSpectrum absorbed = share * SampledSpectrum(1 - scattered.weight.v);
-      shares_.add_absorbed(point.material_id, organ, share, absorbed);
-      if (!state_.is_leaf.empty() && state_.is_leaf[point.material_id]) add_leaf(point.hit, at, share, absorbed);
+      shares.add_absorbed(point.material_id, organ, share, absorbed);
+      if (!state_.is_leaf.empty() && state_.is_leaf[point.material_id])
+        add_leaf(point.hit, at, share, absorbed, shares);
       share *= scattered.weight;
       lambda.retire_black_lanes(share);
       if (share.is_black()) return;
@@ -193,66 +200,86 @@ class FluxMeter::Block {
   }
 
   /// Adds the light of a hit of a leaf, which is sunlit or shaded.
-  void add_leaf(const Hit& hit, VertexKey at, const SampledSpectrum& incident, const SampledSpectrum& absorbed) {
+  void add_leaf(const Hit& hit, VertexKey at, const SampledSpectrum& incident, const SampledSpectrum& absorbed,
+                FluxShares& shares) {
     const auto add = [&](FluxLeaves leaves) {
-      shares_.add(leaf_quantity(state_.materials, leaves, kAbsorbed), absorbed);
-      shares_.add(leaf_quantity(state_.materials, leaves, kIncident), incident);
+      shares.add(leaf_quantity(state_.materials, leaves, kAbsorbed), absorbed);
+      shares.add(leaf_quantity(state_.materials, leaves, kIncident), incident);
     };
     add(kAllLeaves);
     if (state_.sun)
       add(is_sunlit(state_.scene(), hit, *state_.sun, at.key(Use::shadow_ray)) ? kSunlitLeaves : kShadedLeaves);
   }
 
-  /// Adds energy and photons to the channels of direct or of diffuse light.
-  void add_split_shares(const SampledWavelengths& lambda) {
-    for (size_t lane = 0; lane < size_t(lambda.count); ++lane) {
-      const size_t band = lambda.band[lane];
-      ++seen[band];
-      const double per_energy = double(lambda.nm[lane]) / state_.wavelengths.light(band).mean_nm;
-      const size_t energy = state_.channels.energy(band, is_direct_),
-                   photons = state_.channels.photons(band, is_direct_);
-      for (size_t q = 0; q < shares_.values().size(); ++q) {
-        const auto share = double(shares_.values()[q].v[lane]);
-        if (share == 0) continue;
-        moments[q * state_.channels.count() + energy].add(share);
-        moments[q * state_.channels.count() + photons].add(share * per_energy);
+  void add_pair() {
+    const auto& [a, b] = paths_;
+    for (size_t lane = 0; lane < size_t(a.lambda.count); ++lane) {
+      const size_t band = a.lambda.band[lane];
+      seen[band] += 2;
+      const auto lane_of = [lane](const SampledSpectrum& first, const SampledSpectrum& second) {
+        return PairShare{double(first.v[lane]), double(second.v[lane])};
+      };
+      // Photons relative to energy.
+      PairShare photons{1, 1};
+      if (state_.channels.splits) {
+        const double mean_nm = state_.wavelengths.light(band).mean_nm;
+        photons = PairShare{double(a.lambda.nm[lane]), double(b.lambda.nm[lane])} * (1 / mean_nm);
       }
-      for (const FluxShares::OfOrgan& o : shares_.organs()) {
-        const double absorbed = double(o.absorbed.v[lane]), incident = double(o.incident.v[lane]) * kIncidentScale;
-        const size_t first = band * kOrganChannels;
-        of_organs_.push_back({o.organ, first + (is_direct_ ? kOrganDirect : kOrganDiffuse), absorbed});
-        of_organs_.push_back({o.organ, first + kOrganPhotons, absorbed * per_energy});
-        of_organs_.push_back({o.organ, first + kOrganIncident, incident});
-        of_organs_.push_back({o.organ, first + kOrganIncidentPhotons, incident * per_energy});
+      for (size_t q = 0; q < a.shares.values().size(); ++q) {
+        const PairShare share = lane_of(a.shares.values()[q], b.shares.values()[q]);
+        if (!share.is_zero()) add_share(q, band, share, photons);
       }
+      visit_organs(a.shares, b.shares,
+                   [&](uint64_t organ, const FluxShares::Light& of_a, const FluxShares::Light& of_b) {
+                     add_organ(organ, band, lane_of(of_a.absorbed, of_b.absorbed),
+                               lane_of(of_a.incident, of_b.incident), photons);
+                   });
     }
   }
 
-  void add_shares(const SampledWavelengths& lambda) {
-    if (state_.channels.splits) return add_split_shares(lambda);
-    for (size_t q = 0; q < shares_.values().size(); ++q) {
-      const SensorResponse response = state_.scene().wavelengths().sensor(shares_.values()[q], lambda);
-      for (size_t k = 0; k < size_t(response.count); ++k)
-        moments[q * state_.bands + response.channel[k]].add(response.value[k]);
+  void add_share(size_t quantity, size_t band, const PairShare& share, const PairShare& photons) {
+    const auto add = [&](size_t channel, const PairShare& x) {
+      moments[quantity * state_.channels.count() + channel] += x.moment();
+    };
+    add(state_.channels.energy(band, kAllLight), share);
+    if (!state_.channels.splits) return;
+    add(state_.channels.photons(band, kAllLight), share * photons);
+    for (const LightPart part : {kDirectLight, kDiffuseLight}) {
+      const PairShare of_part = share * is_of(part);
+      if (of_part.is_zero()) continue;
+      add(state_.channels.energy(band, part), of_part);
+      add(state_.channels.photons(band, part), of_part * photons);
     }
-    for (size_t lane = 0; lane < size_t(lambda.count); ++lane) {
-      ++seen[lambda.band[lane]];
-      for (const FluxShares::OfOrgan& o : shares_.organs())
-        of_organs_.push_back({o.organ, lambda.band[lane], double(o.absorbed.v[lane])});
-    }
+  }
+
+  void add_organ(uint64_t organ, size_t band, const PairShare& absorbed, const PairShare& incident,
+                 const PairShare& photons) {
+    const auto add = [&](size_t channel, const PairShare& x) { of_organs_.push_back({organ, channel, x.moment()}); };
+    if (!state_.channels.splits) return add(band, absorbed);
+    const size_t first = band * kOrganChannels;
+    add(first + kOrganEnergy, absorbed);
+    add(first + kOrganDirect, absorbed * is_of(kDirectLight));
+    add(first + kOrganPhotons, absorbed * photons);
+    add(first + kOrganIncident, incident * kIncidentScale);
+    add(first + kOrganIncidentPhotons, incident * photons * kIncidentScale);
+  }
+
+  /// Whether the light of each path is of a part: 1 or 0.
+  PairShare is_of(LightPart part) const {
+    const auto is = [part](const Path& path) { return path.is_direct == (part == kDirectLight) ? 1.0 : 0.0; };
+    return {is(paths_[0]), is(paths_[1])};
   }
 
   struct OfOrgan {
     uint64_t organ;
     size_t channel;
-    double share;
+    Moment share;
   };
 
   State& state_;
   Arena arena_;
-  FluxShares shares_;
+  std::array<Path, 2> paths_;  ///< of a pair
   std::vector<OfOrgan> of_organs_;
-  bool is_direct_ = false;  ///< where the path's light came from
 };
 
 FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxRequest& request, const Scene* other) {
@@ -296,6 +323,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   s.reflectors = reflectors_of(s.scene());
   s.moments.resize(s.quantities() * s.channels.count());
   s.seen.resize(bands);
+  s.turns = s.wavelengths.turns();
   s.optics_nm = s.scene().wavelengths().range_nm();
   s.ranges_nm = std::move(ranges_nm);
   if (!s.is_leaf.empty()) {
@@ -324,7 +352,7 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
                       const std::function<void()>& after_round) {
   State& s = *state_;
   trace_blocks<Block>(
-      s.loaded, s.end, paths, pool, control, [&s] { return std::make_unique<Block>(s); },
+      s.loaded, s.end, paths + paths % 2, pool, control, [&s] { return std::make_unique<Block>(s); },
       [&s](const Block& block) {
         for (size_t i = 0; i < s.moments.size(); ++i) s.moments[i].add(block.moments[i]);
         for (size_t i = 0; i < s.seen.size(); ++i) s.seen[i] += block.seen[i];
@@ -371,15 +399,11 @@ void FluxMeter::add(const SumsPart& part, const std::string& name) {
 FluxMeasurement FluxMeter::read() const {
   const State& s = *state_;
   const auto bands = s.scene().wavelengths().bands();
-  const auto moment = [&](size_t quantity, size_t channel) {
-    return s.moments[quantity * s.channels.count() + channel].value();
-  };
   const auto shares = [&](size_t quantity) {
     std::vector<MeanError> result;
     for (size_t band = 0; band < s.bands; ++band) {
-      const Moment direct = moment(quantity, s.channels.energy(band, true));
-      result.push_back(
-          (s.channels.splits ? direct + moment(quantity, s.channels.energy(band, false)) : direct).mean(s.seen[band]));
+      const ExactMoment& all = s.moments[quantity * s.channels.count() + s.channels.energy(band, kAllLight)];
+      result.push_back(all.value().mean_of_pairs(s.seen[band]));
     }
     return result;
   };
@@ -422,13 +446,13 @@ EnergyBudget FluxMeter::read_energy() const {
   const auto shares = [&s](size_t quantity) {
     std::vector<EnergyShare> result;
     for (size_t band = 0; band < s.bands; ++band) {
-      const auto parts = [&](size_t direct, size_t diffuse) {
-        const ExactMoment* of_quantity = &s.moments[quantity * s.channels.count()];
-        const Moment a = of_quantity[direct].value(), b = of_quantity[diffuse].value();
-        return LightParts{(a + b).mean(s.seen[band]), a.mean(s.seen[band]), b.mean(s.seen[band])};
+      const auto parts = [&](size_t first) {
+        const auto mean = [&](LightPart part) {
+          return s.moments[quantity * s.channels.count() + first + part].value().mean_of_pairs(s.seen[band]);
+        };
+        return LightParts{mean(kAllLight), mean(kDirectLight), mean(kDiffuseLight)};
       };
-      result.push_back({parts(s.channels.energy(band, true), s.channels.energy(band, false)),
-                        parts(s.channels.photons(band, true), s.channels.photons(band, false))});
+      result.push_back({parts(s.channels.energy(band, kAllLight)), parts(s.channels.photons(band, kAllLight))});
     }
     return result;
   };
@@ -456,14 +480,13 @@ EnergyBudget FluxMeter::read_energy() const {
   if (!s.by_organ) return budget;
   for (size_t cell = 0; cell < s.by_organ->size(); cell += kOrganChannels) {
     const uint64_t paths = s.seen[cell / kOrganChannels % s.bands];
-    const Moment direct = s.by_organ->at(cell + kOrganDirect), diffuse = s.by_organ->at(cell + kOrganDiffuse);
+    const auto absorbed = [&](size_t channel) { return organ_mean(s.by_organ->at(cell + channel), paths); };
     const auto incident = [&](size_t channel) {
       const MeanError mean = organ_mean(s.by_organ->at(cell + channel), paths);
       return MeanError{mean.mean / kIncidentScale, mean.standard_error / kIncidentScale};
     };
-    budget.organs.push_back({organ_mean(direct + diffuse, paths), organ_mean(direct, paths),
-                             organ_mean(s.by_organ->at(cell + kOrganPhotons), paths), incident(kOrganIncident),
-                             incident(kOrganIncidentPhotons)});
+    budget.organs.push_back({absorbed(kOrganEnergy), absorbed(kOrganDirect), absorbed(kOrganPhotons),
+                             incident(kOrganIncident), incident(kOrganIncidentPhotons)});
   }
   return budget;
 }

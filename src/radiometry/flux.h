@@ -71,7 +71,8 @@ class FluxMeter {
   FluxMeter(Session& session, SceneDescription description, const FluxRequest& request, const Scene* other = nullptr);
   ~FluxMeter();
 
-  /// Traces this many further paths, or fewer if stopped or out of time. The result depends only on the total number.
+  /// Traces this many further paths, one more if it is odd, or fewer if stopped or out of time. The result depends only
+  /// on the total number.
   /// `after_round` is called periodically when the state can be saved; may be empty.
   void trace(uint64_t paths, ThreadPool& pool, const RenderControl& control = {},
              const std::function<void()>& after_round = {});

@@ -30,16 +30,32 @@ inline size_t leaf_quantity(size_t materials, FluxLeaves leaves, FluxOfMaterial 
   return flux_quantity(materials, kAbsorbed) + leaves * 2 + quantity;
 }
 
-/// Channels of a quantity: one for each band, or four.
+/// Light by where it came from. The paths of a pair may differ in it: all light has sums of its own.
+enum LightPart : size_t { kAllLight, kDirectLight, kDiffuseLight, kLightParts };
+
+/// Channels of a quantity: one for each band, or six.
 struct FluxChannels {
   size_t bands;
-  bool splits;  ///< whether direct and diffuse light, energy and photons have channels of their own
+  bool splits;  ///< whether energy and photons, each of all, direct and diffuse light, have channels of their own
 
-  size_t count() const { return splits ? 4 * bands : bands; }
-  /// Channel of the energy. Without splitting, that of all light.
-  size_t energy(size_t band, bool is_direct) const { return splits ? 4 * band + (is_direct ? 0 : 1) : band; }
-  size_t photons(size_t band, bool is_direct) const { return 4 * band + (is_direct ? 2 : 3); }
+  size_t count() const { return splits ? 2 * kLightParts * bands : bands; }
+  /// Channel of the energy. Without splitting, there is that of all light.
+  size_t energy(size_t band, LightPart part) const { return splits ? 2 * kLightParts * band + part : band; }
+  size_t photons(size_t band, LightPart part) const { return (2 * band + 1) * kLightParts + part; }
 };
+
+/// Channels of an organ in a band, where direct light, energy and photons are apart.
+enum OrganChannel : size_t {
+  kOrganEnergy,
+  kOrganDirect,
+  kOrganPhotons,
+  kOrganIncident,
+  kOrganIncidentPhotons,
+  kOrganChannels
+};
+
+/// Factor on incident light in these sums: light that white surfaces return again and again would exceed their range.
+constexpr double kIncidentScale = 0x1p-8;
 
 /// One path's shares of the incident light by quantity, lane by lane.
 class FluxShares {
@@ -56,9 +72,12 @@ class FluxShares {
     add(kTotal, share);
   }
   /// Light that falls on an organ and that it absorbs.
+  struct Light {
+    SampledSpectrum incident, absorbed;
+  };
   struct OfOrgan {
     uint64_t organ;
-    SampledSpectrum incident, absorbed;
+    Light light;
   };
   /// `organ`: number of the organ that absorbs, of the incident light; 0: none.
   void add_absorbed(uint32_t material, uint64_t organ, const SampledSpectrum& incident, const SampledSpectrum& share) {
@@ -66,9 +85,9 @@ class FluxShares {
     if (organ == 0) return;
     const auto known = std::ranges::find(organs_, organ, &OfOrgan::organ);
     if (known == organs_.end())
-      organs_.push_back({organ, incident, share});
+      organs_.push_back({organ, {incident, share}});
     else
-      known->incident += incident, known->absorbed += share;
+      known->light.incident += incident, known->light.absorbed += share;
   }
   const std::vector<SampledSpectrum>& values() const { return values_; }
   const std::vector<OfOrgan>& organs() const { return organs_; }
@@ -78,7 +97,7 @@ class FluxShares {
   std::vector<OfOrgan> organs_;
 };
 
-/// Sum and sum of squares over paths.
+/// Sum over paths, with a sum of squares: of the paths, or of the differences within pairs of paths.
 struct Moment {
   double sum = 0, square = 0;
   void add(double x) { sum += x, square += x * x; }
@@ -86,15 +105,40 @@ struct Moment {
     sum += other.sum, square += other.square;
     return *this;
   }
-  /// Moment of the sum of two values of which each path has at most one.
-  friend Moment operator+(Moment a, const Moment& b) { return a += b; }
   MeanError mean(uint64_t paths) const {
     const auto n = double(paths);
     if (paths == 0) return {};
     const double mean = sum / n, variance = std::max(0.0, square / n - mean * mean);
     return {mean, paths > 1 ? std::sqrt(variance / (n - 1)) : 0};
   }
+  /// The same of pairs, whose differences estimate the variance without bias, however the strata differ.
+  MeanError mean_of_pairs(uint64_t paths) const {
+    if (paths == 0) return {};
+    return {sum / double(paths), std::sqrt(square) / double(paths)};
+  }
 };
+
+/// Shares of the two paths of a pair, or factors on them.
+struct PairShare {
+  double first, second;
+  PairShare operator*(const PairShare& b) const { return {first * b.first, second * b.second}; }
+  PairShare operator*(double factor) const { return {first * factor, second * factor}; }
+  bool is_zero() const { return first == 0 && second == 0; }
+  Moment moment() const { return {first + second, (first - second) * (first - second)}; }
+};
+
+/// Calls act(organ, its light of the first path, its light of the second path) for each organ that either has met.
+template <class Act>
+void visit_organs(const FluxShares& first, const FluxShares& second, const Act& act) {
+  using OfOrgan = FluxShares::OfOrgan;
+  const auto &a = first.organs(), &b = second.organs();
+  for (const OfOrgan& o : a) {
+    const auto other = std::ranges::find(b, o.organ, &OfOrgan::organ);
+    act(o.organ, o.light, other == b.end() ? FluxShares::Light() : other->light);
+  }
+  for (const OfOrgan& o : b)
+    if (std::ranges::find(a, o.organ, &OfOrgan::organ) == a.end()) act(o.organ, FluxShares::Light(), o.light);
+}
 
 /// Adds numbers that are stored as bytes to as many others.
 template <class T>
@@ -132,10 +176,11 @@ class ExactMoment {
 class OrganSums {
  public:
   OrganSums(uint64_t organs, size_t channels) : channels_(channels), cells_(organs * channels) {}
-  void add(uint64_t organ, size_t channel, double share) {
+  /// Adds what one path, or a pair of paths has brought.
+  void add(uint64_t organ, size_t channel, const Moment& share) {
     Cell& cell = cells_[(organ - 1) * channels_ + channel];
-    std::atomic_ref(cell.sum).fetch_add(std::llrint(share * kUnits), std::memory_order_relaxed);
-    const double square = std::min(share * share, kLargestSquare);
+    std::atomic_ref(cell.sum).fetch_add(std::llrint(share.sum * kUnits), std::memory_order_relaxed);
+    const double square = std::min(share.square, kLargestSquare);
     std::atomic_ref(cell.square).fetch_add(std::llrint(square * kUnits), std::memory_order_relaxed);
   }
   size_t size() const { return cells_.size(); }

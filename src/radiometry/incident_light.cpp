@@ -13,6 +13,12 @@ namespace {
 /// 1e-12 of the light, of a cosine that is rounded to 0 about 1e-7.
 constexpr float kGrazing = 1e-6f;
 
+/// Returns the point as floats below 1.
+Vec2 to_floats(const UnitPoint& u) {
+  constexpr float kBelowOne = 1 - 0x1p-24f;
+  return {std::min(float(u[0]), kBelowOne), std::min(float(u[1]), kBelowOne)};
+}
+
 std::optional<LightSample> sample_from_above(const Light& light, Vec2 u, const SampledWavelengths& lambda) {
   const auto s = light.sample({}, u, lambda);
   if (!s || s->wi.z < kGrazing || s->pdf <= 0) return {};
@@ -60,16 +66,16 @@ IncidentLight::IncidentLight(const Scene& scene, HorizontalIrradiance irradiance
   }
 }
 
-std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
+std::optional<IncidentLight::Sample> IncidentLight::sample(UnitPoint place, RandomStream& random,
                                                            const SampledWavelengths& lambda) const {
   const std::vector<double>& shares = irradiance_.shares();
-  double choice = random.uniform_double();
   size_t i = 0;
-  while (i + 1 < shares.size() && choice >= shares[i]) choice -= shares[i++];
+  while (i + 1 < shares.size() && place[0] >= shares[i]) place[0] -= shares[i++];
+  place[0] /= shares[i];
   const Vec2 u{random.uniform(), random.uniform()};
   std::optional<Sample> s;
   if (const auto* lamp = lights_[i]->is_distant() ? nullptr : dynamic_cast<const EmissionSampler*>(lights_[i])) {
-    const auto ray = lamp->sample_emission({random.uniform(), random.uniform()}, u, lambda);
+    const auto ray = lamp->sample_emission(to_floats(place), u, lambda);
     if (ray) s = Sample{ray->direction, ray->power, false, ray->origin};
   } else {
     s = sample_light(*lights_[i], cosine_sampled_[i], u, lambda);
@@ -80,21 +86,23 @@ std::optional<IncidentLight::Sample> IncidentLight::sample(RandomStream& random,
   const SampledSpectrum irradiance = irradiance_.at(lambda);
   for (int lane = 0; lane < lambda.count; ++lane)
     if (irradiance[lane] > 0) weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
-  return Sample{s->direction, weight, !s->origin && frond::is_direct(*lights_[i], -s->direction), s->origin};
+  return Sample{s->direction, weight, !s->origin && frond::is_direct(*lights_[i], -s->direction), s->origin, place};
 }
 
-EntryBox::Point EntryBox::sample(const Vec3d& d, Vec2 u, RandomStream& random) const {
+EntryBox::Point EntryBox::sample(const Vec3d& d, UnitPoint u) const {
   const Target& t = target;
-  const double x = std::lerp(t.x0, t.x1, double(u.x)), y = std::lerp(t.y0, t.y1, double(u.y));
-  if (!bottom) return {{x, y, t.z}};
+  const double y = std::lerp(t.y0, t.y1, u[1]);
+  if (!bottom) return {{std::lerp(t.x0, t.x1, u[0]), y, t.z}};
   const double width = t.x1 - t.x0, depth = t.y1 - t.y0, height = t.z - *bottom;
   const double top = width * depth, along_x = depth * height * std::abs(d.x / d.z),
                along_y = width * height * std::abs(d.y / d.z), all = top + along_x + along_y;
   const auto weight = float(all / top);
-  const double face = random.uniform_double() * all;
-  if (face < top) return {{x, y, t.z}, weight};
-  if (face < top + along_x) return {{d.x > 0 ? t.x0 : t.x1, y, std::lerp(*bottom, t.z, double(u.x))}, weight};
-  return {{x, d.y > 0 ? t.y0 : t.y1, std::lerp(*bottom, t.z, double(u.y))}, weight};
+  double at = u[0] * all;  // along the faces side by side
+  if (at < top) return {{std::lerp(t.x0, t.x1, at / top), y, t.z}, weight};
+  at -= top;
+  if (at < along_x || along_y == 0) return {{d.x > 0 ? t.x0 : t.x1, y, std::lerp(*bottom, t.z, at / along_x)}, weight};
+  const double x = std::lerp(t.x0, t.x1, (at - along_x) / along_y);
+  return {{x, d.y > 0 ? t.y0 : t.y1, std::lerp(*bottom, t.z, u[1])}, weight};
 }
 
 }  // namespace frond

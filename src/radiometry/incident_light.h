@@ -6,6 +6,7 @@
 
 #include "radiometry/brf.h"
 #include "radiometry/horizontal_irradiance.h"
+#include "radiometry/path_pairs.h"
 
 namespace frond {
 
@@ -20,9 +21,11 @@ class IncidentLight {
     SampledSpectrum weight;           ///< mean 1
     bool is_direct = false;           ///< as frond::is_direct; light of lamps is not
     std::optional<Vec3> origin = {};  ///< of light of a lamp in the scene
+    UnitPoint place{};                ///< uniform, for the place where light from outside enters
   };
-  /// Returns a direction of one of the lights; nullopt if the sample fails.
-  std::optional<Sample> sample(RandomStream& random, const SampledWavelengths& lambda) const;
+  /// Returns a direction of one of the lights; nullopt if the sample fails. `place`: uniform; each light has a strip of
+  /// the square, which is mapped to its places: `Sample::place`, or the points of a lamp.
+  std::optional<Sample> sample(UnitPoint place, RandomStream& random, const SampledWavelengths& lambda) const;
 
  private:
   std::span<const Light* const> lights_;
@@ -41,8 +44,8 @@ struct EntryBox {
     Vec3d p;           ///< in the coordinates of the scene file
     float weight = 1;  ///< area of the faces over that of the target, both projected along the direction
   };
-  /// Returns a point, uniform over the projected faces, for light that propagates along `d`, downward.
-  Point sample(const Vec3d& d, Vec2 u, RandomStream& random) const;
+  /// Returns a point, uniform over the projected faces, for light that propagates along `d`, downward. `u`: uniform.
+  Point sample(const Vec3d& d, UnitPoint u) const;
 };
 
 }  // namespace frond

@@ -30,6 +30,9 @@ class LitBands {
   BandLight light(size_t band) const { return {samplers_[band].integral(), samplers_[band].centroid_nm()}; }
   const BandLight& direct_light(size_t band) const { return direct_[band]; }
 
+  /// Returns the number of successive samples after which their bands repeat.
+  uint64_t turns() const;
+
   /// As WavelengthStrategy::sample_for_index.
   SampledWavelengths sample_for_index(uint64_t index, float u) const {
     SampledWavelengths lambda = strategy_.sample_for_index(index, u);

@@ -18,7 +18,7 @@ namespace {
 
 // Format: magic word, number of parts, and for each part the size of its header, header, arrays. Headers and arrays are
 // followed by their hashes.
-constexpr std::string_view kMagic = "frond sums 2\n";
+constexpr std::string_view kMagic = "frond sums 3\n";
 
 std::string header_text(const SumsPart& part) {
   auto fields = nlohmann::json::array(), sizes = nlohmann::json::array();

@@ -15,7 +15,7 @@ static void append(std::string& to, uint64_t number) {
 
 FROND_FUZZ_TARGET(sums, bytes) {
   const std::string_view header = fuzz::take_part(bytes);
-  std::string file = "frond sums 2\n";
+  std::string file = "frond sums 3\n";
   append(file, 1);
   append(file, header.size());
   file += header;
