@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/math/exact_sum.h"
 #include "core/spectrum.h"
 #include "instruments/errors/statistics.h"
@@ -179,26 +180,53 @@ class OrganSums {
   /// Adds what one path, or a pair of paths has brought.
   void add(uint64_t organ, size_t channel, const Moment& share) {
     Cell& cell = cells_[(organ - 1) * channels_ + channel];
-    std::atomic_ref(cell.sum).fetch_add(std::llrint(share.sum * kUnits), std::memory_order_relaxed);
-    const double square = std::min(share.square, kLargestSquare);
-    std::atomic_ref(cell.square).fetch_add(std::llrint(square * kUnits), std::memory_order_relaxed);
+    add(cell.sum, share.sum);
+    add(cell.square, std::min(share.square, kLargestSquare));
   }
   size_t size() const { return cells_.size(); }
-  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
+  /// Throws InputError if a sum has exceeded its range, as do all that read the sums.
+  std::span<const std::byte> bytes() const {
+    check();
+    return std::as_bytes(std::span(cells_));
+  }
   /// Adds the sums of other paths, which bytes() has returned.
-  void add(std::span<const std::byte> bytes) { add_elements(std::span(&cells_.front().sum, 2 * cells_.size()), bytes); }
-  Moment at(size_t cell) const { return {double(cells_[cell].sum) / kUnits, double(cells_[cell].square) / kUnits}; }
+  void add(std::span<const std::byte> bytes) {
+    const std::span sums(&cells_.front().sum, 2 * cells_.size());
+    add_elements(sums, bytes);
+    if (std::ranges::any_of(sums, [](int64_t sum) { return sum < 0 || sum >= kFull; })) is_full_ = true;
+  }
+  Moment at(size_t cell) const {
+    check();
+    return {double(cells_[cell].sum) / kUnits, double(cells_[cell].square) / kUnits};
+  }
 
   static constexpr size_t kCellBytes = 16;
 
  private:
   static constexpr double kUnits = 0x1p36;
-  static constexpr double kLargestSquare = 0x1p20;  ///< light from the horizon has large weights: 64 bits suffice
+  static constexpr double kLargestSquare = 0x1p20;  ///< of a term: light from the horizon has large weights
+  static constexpr int64_t kFull = int64_t{1} << 62;
   struct Cell {
     int64_t sum = 0, square = 0;
   };
+
+  void add(int64_t& sum, double term) {
+    const double units = term * kUnits;
+    if (!(units < double(kFull)) ||
+        std::atomic_ref(sum).fetch_add(std::llrint(units), std::memory_order_relaxed) >= kFull)
+      is_full_ = true;
+  }
+  void check() const {
+    if (is_full_)
+      fail({},
+           "the light of so many paths exceeds the sums of single organs, which hold {:.2g} paths that one organ "
+           "absorbs: take fewer paths",
+           double(kFull) / kUnits);
+  }
+
   size_t channels_;
   std::vector<Cell> cells_;
+  std::atomic<bool> is_full_ = false;
 };
 
 }  // namespace frond
