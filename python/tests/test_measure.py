@@ -295,8 +295,8 @@ def test_flux_until_the_error_of_leaves(tmp_path):
     given = {"scene": tmp_path / "canopy.pbrt", "wavelengths": [550], "by": "instance"}
     few = frond.run("flux", **given, paths=64).facts
     assert few["instance_error_median"] > 0.05 and few["instance_error_largest"] >= few["instance_error_median"]
-    reached = frond.run("flux", **given, instance_error=0.003).facts
-    assert reached["instance_error_median"] <= 0.003 and reached["paths"] > 65536
+    reached = frond.run("flux", **given, instance_error=0.001).facts
+    assert reached["instance_error_median"] <= 0.001 and reached["paths"] > 65536
     with pytest.raises(frond.InputError, match="instance_error needs by"):
         frond.flux(tmp_path / "canopy.pbrt", instance_error=0.1)
 
