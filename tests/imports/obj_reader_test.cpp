@@ -72,7 +72,7 @@ TEST(ObjReader, FacesThatAreNoneAreNamed) {
 }
 
 TEST(ObjReader, Utf16IsNamed) {
-  const std::string utf16("\xff\xfe" "v\0 \0", 6);
+  const std::string utf16 = std::string("\xff\xfe") + "v" + '\0';
   EXPECT_EQ(refusal_of_obj(utf16), "it is UTF-16 text: save it as UTF-8");
   EXPECT_THAT(read_obj(kMaterial, utf16).warnings,
               ElementsAre("\"a.mtl\" is not read: it is UTF-16 text: save it as UTF-8"));
