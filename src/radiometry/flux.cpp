@@ -211,6 +211,7 @@ class FluxMeter::Block {
       add(is_sunlit(state_.scene(), hit, *state_.sun, at.key(Use::shadow_ray)) ? kSunlitLeaves : kShadedLeaves);
   }
 
+  /// Adds the light of both paths of a pair to all sums.
   void add_pair() {
     const auto& [a, b] = paths_;
     for (size_t lane = 0; lane < size_t(a.lambda.count); ++lane) {
@@ -237,6 +238,7 @@ class FluxMeter::Block {
     }
   }
 
+  /// Adds shares of a quantity; `photons`: factors from energy to photons.
   void add_share(size_t quantity, size_t band, const PairShare& share, const PairShare& photons) {
     const auto add = [&](size_t channel, const PairShare& x) {
       moments[quantity * state_.channels.count() + channel] += x.moment();
