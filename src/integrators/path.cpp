@@ -37,6 +37,13 @@ constexpr Param kPath[] = {
      .doc =
          "Rays that the first hit scatters where its surface is not a mirror; later hits scatter one. 0: one or two by "
          "material, whichever has less noise in the same time, by a pilot."},
+    {.name = "roulette",
+     .kind = ParamKind::real,
+     .default_value = 0,
+     .range = {0, 1e6},
+     .doc = "Where termination is roulette: a path survives a scattering with the probability roulette x throughput. "
+            "0: by "
+            "a pilot, for the least noise in the same time; paths that have found little light survive."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
@@ -67,12 +74,17 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator, p
                   .scattered_rays = std::max(1, p.integer("scatteredrays")),
                   .cut_off_attenuation = p.string("termination") == "attenuation",
                   .cutoff = float(p.real("cutoff")),
+                  .roulette = {},
                   .regularizes = p.boolean("regularize"),
                   .hides_background = p.boolean("hidebackground"),
                   .rays_by_material = {},
                   .subsurface = {}},
-        adapted_{.light_samples = p.integer("lightsamples") == 0, .scattered_rays = p.integer("scatteredrays") == 0},
-        strategy_(light_strategy(p)) {}
+        adapted_{.light_samples = p.integer("lightsamples") == 0,
+                 .scattered_rays = p.integer("scatteredrays") == 0,
+                 .roulette = p.real("roulette") == 0 && !settings_.cut_off_attenuation},
+        strategy_(light_strategy(p)) {
+    if (const double scale = p.real("roulette"); scale > 0) settings_.roulette = {.scale = float(scale), .mean = 0};
+  }
 
   void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) override {
     fluorescence_ = std::move(by_material);
@@ -90,7 +102,7 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator, p
     if (std::ranges::all_of(bands, is_of_fluorescence) && !bands.empty()) return {};  // no reflected light
     AdaptedSettings adapted = adapted_;
     adapted.light_samples = adapted.light_samples && settings_.sample_lights && selector_.has_extent();
-    if (!adapted.light_samples && !adapted.scattered_rays) return {};
+    if (!adapted.light_samples && !adapted.scattered_rays && !adapted.roulette) return {};
     try {
       adapt_to_scene(world, selector_, adapted, sampling, settings_);
     } catch (const SurfaceError&) {

@@ -65,21 +65,48 @@ struct Noise {
 };
 
 /// Selects the options with which images have the least variance in the same time. The sets that are compared consist
-/// of the options that save most for their cost; without noise at edges the best set is one of these. `cost` is the CPU
-/// time without options.
-void select_best(std::vector<Option> options, Noise noise, double cost) {
+/// of the options that save most for their cost; without noise at edges the best set is one of these. `noise` and
+/// `cost`, the CPU time, are those without options, and become those with the selected ones.
+void select_best(std::vector<Option> options, Noise& noise, double& cost) {
   std::erase_if(options, [](const Option& o) { return !(o.second.saved > 0 && o.second.cost > 0); });
   std::ranges::stable_sort(options, std::greater(), [](const Option& o) { return o.second.saved / o.second.cost; });
-  double least = noise.in_same_time(1), relative_cost = 1;
+  const auto take = [](const SecondSample& second, Noise& left, double& time) {
+    left.later = std::max(0., left.later - second.saved);
+    time += second.cost;
+  };
+  Noise tried = noise;
+  double tried_cost = cost, least = noise.in_same_time(1);
   size_t best = 0;
   for (size_t i = 0; i < options.size(); ++i) {
-    noise.later = std::max(0., noise.later - options[i].second.saved);
-    relative_cost += options[i].second.cost / cost;
-    const double after = noise.in_same_time(relative_cost);
+    take(options[i].second, tried, tried_cost);
+    const double after = tried.in_same_time(tried_cost / cost);
     if (after < least) least = after, best = i + 1;
   }
-  for (size_t i = 0; i < best; ++i) *options[i].count = 2;
+  for (size_t i = 0; i < best; ++i) {
+    take(options[i].second, noise, cost);
+    *options[i].count = 2;
+  }
 }
+
+/// What the rays that first vertices scatter find: sums over the rays.
+struct Scattered {
+  double squares = 0;  ///< of the colour that a ray adds to the image
+  double shares = 0;   ///< squares of the share with which its radiance counts
+  double rays = 0;     ///< number of rays, later ones included
+  double count = 0;
+
+  /// Scale of roulette for the least variance in the same time, of an image with this variance and CPU time (Bolin and
+  /// Meyer 1997, "An Error Metric for Monte Carlo Ray Tracing", without its measure of what is visible). A path that
+  /// survives with the probability q adds the variance X (1/q - 1) and takes the time q C, where X is the expected
+  /// square of what it finds: the best q is sqrt(X / variance * cost / C), and X is proportional to the square of its
+  /// share. The result is kEven times as large, because roulette is independent from sample to sample, whereas the
+  /// variance is that of evenly spread samples, which falls faster (measured).
+  float roulette_scale(double variance, double cost) const {
+    constexpr double kEven = 2, kLeast = 1, kMost = 64;
+    const double scale = kEven * std::sqrt(squares / shares * cost / variance / (rays / count));
+    return std::isnan(scale) ? float(kMost) : float(std::clamp(scale, kLeast, kMost));
+  }
+};
 
 /// Paths of a few pixels, two bundles of each, whose first vertices take two of both. All sums are over bundles.
 class Pilot {
@@ -91,8 +118,11 @@ class Pilot {
 
   SecondSample light;
   std::map<uint32_t, SecondSample> scattered;  ///< by material
+  Scattered later;                             ///< what scattered rays find
   double variance = 0;                         ///< of a bundle's sum
   double cost = 0;                             ///< CPU time
+  double brightness = 0;                       ///< radiance of paths, mean over their wavelengths
+  uint64_t path_count = 0;
   uint64_t rays_traced = 0;
 
   /// Traces two bundles of a pixel, which `index` selects at random. The sample numbers are those of no other index, as
@@ -108,17 +138,22 @@ class Pilot {
       samples_.make(pixel, (2 * index + which) * PathBundle::kSize, kAll, 0);
       bundle.traced = 0;
       tracer_->trace(bundle);
-      for (size_t i = 0; i < bundle.results.size(); ++i)
-        add(difference, bundle, i, bundle.results[i].radiance, which == 0);
+      for (size_t i = 0; i < bundle.results.size(); ++i) {
+        const SampledSpectrum& found = bundle.results[i].radiance;
+        add(difference, bundle, i, found, which == 0);
+        if (const float value = mean(found, bundle.lambda[i]); std::isfinite(value)) brightness += double(value);
+      }
+      path_count += bundle.results.size();
       add(light, bundle, record_.lights, LaneSet(bundle.lanes));
       light.cost += light_cost(record_.lights[1]);
       std::map<uint32_t, LaneSet> by_material;
       for (const size_t i : LaneSet(bundle.lanes))
         if (bundle.results[i].first.is_hit) by_material[bundle.results[i].first.material].add(i);
-      for (const auto& [material, paths] : by_material) {
-        add(scattered[material], bundle, record_.scattered, paths);
-        for (const size_t i : paths) scattered[material].cost += record_.scattered[1].rays[i];
+      for (const auto& [material, seen] : by_material) {
+        add(scattered[material], bundle, record_.scattered, seen);
+        for (const size_t i : seen) scattered[material].cost += record_.scattered[1].rays[i];
       }
+      for (const SplitRecord::Part& part : record_.scattered) add(later, bundle, part);
       cost += double(bundle.traced) - (1 - kCameraRay) * double(bundle.results.size());
       for (const SplitRecord::Part& part : record_.lights) cost += light_cost(part) - rays_of(part);
       rays_traced += bundle.traced;
@@ -158,6 +193,18 @@ class Pilot {
     add_square(difference, effect.saved);
   }
 
+  /// Adds what these scattered rays find.
+  void add(Scattered& sums, const PathBundle& bundle, const SplitRecord::Part& part) const {
+    for (const size_t i : part.paths) {
+      Color color{};
+      add(color, bundle, i, part.radiance[i], true);
+      add_square(color, sums.squares);
+      sums.shares += std::pow(double(part.share[i]), 2);
+      sums.rays += part.rays[i];
+      ++sums.count;
+    }
+  }
+
   const CameraSampling& sampling_;
   CameraSamples samples_;
   SplitRecord record_;
@@ -172,6 +219,7 @@ void adapt_to_scene(const World& world, const LightSelector& selector, const Ada
   constexpr uint64_t kMostPixels = 1024;
   PathSettings two = settings;
   two.light_samples = two.scattered_rays = 2;
+  two.roulette = {};
   Pilot pilot(world, selector, two, sampling);
   for (uint64_t pixel = 0; pixel < kMostPixels && pilot.rays_traced < kMostRays; ++pixel) {
     check_stop();
@@ -198,6 +246,10 @@ void adapt_to_scene(const World& world, const LightSelector& selector, const Ada
              adapted.scattered_rays ? settings.rays_by_material[material] : settings.scattered_rays);
   noise.edges = kEdges * std::max(0., noise.edges);
   select_best(options, noise, cost);
+  if (!adapted.roulette || pilot.later.count == 0) return;
+  const auto of_path = [&](double sum) { return sum / double(pilot.path_count); };
+  settings.roulette = {.scale = pilot.later.roulette_scale(of_path(noise.later + noise.edges), of_path(cost)),
+                       .mean = float(of_path(pilot.brightness))};
 }
 
 }  // namespace frond

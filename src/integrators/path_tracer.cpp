@@ -21,6 +21,7 @@ struct NoRecord {
   void select_light_sample(int, const LaneSet&) {}
   void select_scattered_ray(int) {}
   void add_path(size_t, int) {}
+  void add_scattered(size_t, int, float) {}
   void add_radiance(size_t, const SampledSpectrum&) {}
   void add_rays(const LaneSet&) {}
 };
@@ -357,7 +358,8 @@ class PathTracer final : public Tracer {
     } else {
       set_ray(points_[lane].hit, sample.wi, path);
     }
-    if (!survives(path)) return false;
+    if (vertex_ == 0) record_.add_scattered(lane, which, share_of(path));
+    if (!survives(lane, path)) return false;
     path.depth += is_exit ? 0 : 1;  // as in pbrt-v4, entry and exit are one scattering
     return true;
   }
@@ -381,14 +383,19 @@ class PathTracer final : public Tracer {
     return true;
   }
 
-  /// Returns false if the path ends here, by Russian roulette or by the cutoff. Roulette starts after the fifth
-  /// scattering: earlier, the few survivors add more noise in dark regions than the time saved is worth.
-  bool survives(Path& path) const {
+  /// Factor on the radiance that the path's next ray finds, without that of its wavelengths: the largest over the
+  /// lanes, as if refraction had not changed it.
+  static float share_of(const Path& path) { return path.throughput.max() * path.eta_scale * path.split_weight; }
+
+  /// Returns false if the path ends here, by Russian roulette or by the cutoff.
+  bool survives(size_t lane, Path& path) const {
     if (path.throughput.is_black()) return false;
     if (settings_.cut_off_attenuation) return attenuation(path) * path.eta_scale >= settings_.cutoff;
-    if (path.depth < kSafeScatterings - 1) return true;
+    float full = 1;
+    if (path.depth < kSafeScatterings - 1)
+      full = std::min(full, mean(bundle_->results[lane].radiance, path.lambda) / settings_.roulette.mean);
     RandomStream random = path.key.stream(Use::roulette);
-    return survives_roulette(path.throughput.max() * path.eta_scale, 1, random, path.throughput);
+    return survives_roulette(settings_.roulette.scale * share_of(path), full, random, path.throughput);
   }
 
   /// The paper's luminance of the attenuation if the lanes are its three colours; else the mean.

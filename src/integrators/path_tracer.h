@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,14 @@
 
 namespace frond {
 
+/// Russian roulette: a path survives with the probability scale T / full, where T is its throughput, and full is 1;
+/// after the first scatterings it is what the path has found, relative to the mean over the image, if that is less.
+/// Hence paths survive that have found nothing, such as those in shadows, and few end where that would be seen.
+struct Roulette {
+  float scale = 1;
+  float mean = INFINITY;  ///< radiance of a path, mean over the image; 0: full is 1 everywhere
+};
+
 /// Values of the parameters of integrator `path`.
 struct PathSettings {
   int max_depth;
@@ -19,6 +28,7 @@ struct PathSettings {
   int scattered_rays;  ///< at the first vertex where the surface is not a mirror, 1 to kMostSplit
   bool cut_off_attenuation;
   float cutoff;
+  Roulette roulette;
   bool regularizes;
   bool hides_background;
   /// scattered_rays by SurfacePoint::material_id; materials beyond the end have scattered_rays.
@@ -34,6 +44,7 @@ class SplitRecord {
     LaneSet paths;                                              ///< whose first vertex takes this sample
     std::array<SampledSpectrum, PathBundle::kSize> radiance{};  ///< as it counts in the result
     std::array<int, PathBundle::kSize> rays{};                  ///< number of rays, including those of later vertices
+    std::array<float, PathBundle::kSize> share{};               ///< of scattered rays: as roulette sees the throughput
   };
   using Parts = std::array<Part, kMostSplit>;
   Parts lights, scattered;
@@ -53,6 +64,8 @@ class SplitRecord {
   void add_path(size_t lane, int rays) {
     for (int which = 0; which < rays; ++which) scattered[size_t(which)].paths.add(lane);
   }
+  /// Adds a scattered ray of a first vertex.
+  void add_scattered(size_t lane, int which, float share) { scattered[size_t(which)].share[lane] = share; }
   void add_radiance(size_t lane, const SampledSpectrum& radiance) {
     if (selected_) selected_->radiance[lane] += radiance;
   }

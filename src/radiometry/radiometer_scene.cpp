@@ -118,6 +118,9 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
   // A target varies more from place to place than a pixel does, so a second ray from the same place does not pay.
   if (find_param(info, "scatteredrays") && !find_param(integrator.params, "scatteredrays"))
     set_param(integrator.params, parsed_numbers("integer", "scatteredrays", {1}));
+  // As early as this in canopies of bright and dark leaves: a pilot would take longer than the measurement.
+  if (find_param(info, "roulette") && !find_param(integrator.params, "roulette"))
+    set_param(integrator.params, parsed_numbers("float", "roulette", {2}));
 }
 
 const ParsedPlugin* light_without_unit(const SceneDescription& description) {

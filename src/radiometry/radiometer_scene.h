@@ -12,8 +12,9 @@ namespace frond {
 void keep_energy(SceneDescription& description, const Registry& registry);
 
 /// Prepares an image's scene for radiometry: applies keep_energy, ends paths by Russian roulette only unless
-/// `keeps_depth`, scatters one ray at each hit unless the integrator states the number, and sets the period and the
-/// wavelengths (a PluginText of `bands`). Throws InputError, also if bands of fluorescence are not what is measured.
+/// `keeps_depth`, scatters one ray at each hit and states roulette unless the integrator does, and sets the period and
+/// the wavelengths (a PluginText of `bands`). Throws InputError, also if bands of fluorescence are not what is
+/// measured.
 void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description, bool fluorescence = false);

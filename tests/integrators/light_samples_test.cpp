@@ -47,7 +47,8 @@ TEST(LightSamples, TwoHaveLessNoiseAndTheSameMean) {
 // lamp from a first hit, and most of the noise is that of later ones.
 TEST(LightSamples, AreTwoWhereThisPays) {
   const auto image = [](const std::string& integrator, const char* albedo, bool is_box) {
-    return render_text(scene("\"integer scatteredrays\" 1 " + integrator, albedo, is_box), {.samples = 16});
+    return render_text(scene("\"float roulette\" 1 \"integer scatteredrays\" 1 " + integrator, albedo, is_box),
+                       {.samples = 16});
   };
   EXPECT_TRUE(image("", ".3", false) == image(samples(2), ".3", false));
   EXPECT_FALSE(image("", ".3", false) == image(samples(1), ".3", false));

@@ -35,7 +35,8 @@ Rotate -40 1 0 0 Translate 1 0 0 Shape "disk" AttributeEnd
                      film, integrator, bright, bright, bright, bright, dark, dark, dark, dark);
 }
 
-std::string rays(int count) { return fmt::format("\"integer scatteredrays\" {}", count); }
+/// With the same roulette, which a pilot selects by what it selects else.
+std::string rays(int count) { return fmt::format("\"float roulette\" 4 \"integer scatteredrays\" {}", count); }
 
 // 5 standard errors: a false alarm in 1.7 million. Also where attenuation ends paths, and without
 // light samples.

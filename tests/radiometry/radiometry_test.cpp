@@ -273,7 +273,7 @@ TEST_F(Radiometry, WhatLeavesAbsorbAddsUpToTheWhole) {
   }
 }
 
-// For two rays, an integrator must state them.
+// For two rays, and for another roulette, an integrator must state them.
 TEST_F(Radiometry, FirstHitsScatterOneRayUnlessTheSceneSaysTwo) {
   const std::string world = kSun + canopy(1, lambertian(0.5, 0.44));
   const BrfRequest request{.views = {{30, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=800"};
@@ -287,6 +287,8 @@ TEST_F(Radiometry, FirstHitsScatterOneRayUnlessTheSceneSaysTwo) {
   const double by_default = measured("");
   EXPECT_EQ(by_default, measured("\"integer scatteredrays\" 1"));
   EXPECT_NE(by_default, measured("\"integer scatteredrays\" 2"));
+  EXPECT_EQ(by_default, measured("\"float roulette\" 2"));
+  EXPECT_NE(by_default, measured("\"float roulette\" 1"));
 }
 
 TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
