@@ -100,9 +100,10 @@ struct Scattered {
   /// survives with the probability q adds the variance X (1/q - 1) and takes the time q C, where X is the expected
   /// square of what it finds: the best q is sqrt(X / variance * cost / C), and X is proportional to the square of its
   /// share. The result is kEven times as large, because roulette is independent from sample to sample, whereas the
-  /// variance is that of evenly spread samples, which falls faster (measured).
+  /// variance is that of evenly spread samples, which falls faster (measured), and at least kLeast, because a pilot may
+  /// miss what few rays find.
   float roulette_scale(double variance, double cost) const {
-    constexpr double kEven = 2, kLeast = 1, kMost = 64;
+    constexpr double kEven = 2, kLeast = 2, kMost = 64;
     const double scale = kEven * std::sqrt(squares / shares * cost / variance / (rays / count));
     return std::isnan(scale) ? float(kMost) : float(std::clamp(scale, kLeast, kMost));
   }
