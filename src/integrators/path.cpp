@@ -43,7 +43,7 @@ constexpr Param kPath[] = {
      .range = {0, 1e6},
      .doc = "Where termination is roulette: a path survives a scattering with the probability roulette x throughput. "
             "0: by "
-            "a pilot, for the least noise in the same time; paths that have found little light survive."},
+            "the pilot, for the least noise in the same time; without a pilot 2, after the fifth scattering."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
@@ -102,7 +102,7 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator, p
     if (std::ranges::all_of(bands, is_of_fluorescence) && !bands.empty()) return {};  // no reflected light
     AdaptedSettings adapted = adapted_;
     adapted.light_samples = adapted.light_samples && settings_.sample_lights && selector_.has_extent();
-    if (!adapted.light_samples && !adapted.scattered_rays && !adapted.roulette) return {};
+    if (!adapted.light_samples && !adapted.scattered_rays) return {};
     try {
       adapt_to_scene(world, selector_, adapted, sampling, settings_);
     } catch (const SurfaceError&) {

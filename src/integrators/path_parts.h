@@ -40,7 +40,8 @@ inline constexpr Param kHideBackground{.name = "hidebackground",
 /// surface without end.
 inline constexpr int kMostPassed = 1000;
 
-/// Russian roulette of `path` and `volpath` starts after these scatterings.
+/// Russian roulette of `volpath` and of fluorescence starts after these scatterings; that of `path` then depends on the
+/// throughput alone.
 inline constexpr int kSafeScatterings = 5;
 
 /// A shadow ray ends short of the light's own surface, at this share of the distance.

@@ -88,6 +88,10 @@ void select_best(std::vector<Option> options, Noise& noise, double& cost) {
   }
 }
 
+/// The nearest power of two: scenes that differ in a material share their roulette, so that their images can be
+/// compared path by path.
+float rounded(double x) { return float(std::exp2(std::round(std::log2(x)))); }
+
 /// What the rays that first vertices scatter find: sums over the rays.
 struct Scattered {
   double squares = 0;  ///< of the colour that a ray adds to the image
@@ -105,7 +109,7 @@ struct Scattered {
   float roulette_scale(double variance, double cost) const {
     constexpr double kEven = 2, kLeast = 2, kMost = 64;
     const double scale = kEven * std::sqrt(squares / shares * cost / variance / (rays / count));
-    return std::isnan(scale) ? float(kMost) : float(std::clamp(scale, kLeast, kMost));
+    return std::isnan(scale) ? float(kMost) : rounded(std::clamp(scale, kLeast, kMost));
   }
 };
 
@@ -197,10 +201,11 @@ class Pilot {
   /// Adds what these scattered rays find.
   void add(Scattered& sums, const PathBundle& bundle, const SplitRecord::Part& part) const {
     for (const size_t i : part.paths) {
+      if (!(part.share[i] > 0)) continue;  // the path ended
       Color color{};
       add(color, bundle, i, part.radiance[i], true);
       add_square(color, sums.squares);
-      sums.shares += std::pow(double(part.share[i]), 2);
+      sums.shares += double(part.share[i]) * double(part.share[i]);
       sums.rays += part.rays[i];
       ++sums.count;
     }
@@ -250,7 +255,7 @@ void adapt_to_scene(const World& world, const LightSelector& selector, const Ada
   if (!adapted.roulette || pilot.later.count == 0) return;
   const auto of_path = [&](double sum) { return sum / double(pilot.path_count); };
   settings.roulette = {.scale = pilot.later.roulette_scale(of_path(noise.later + noise.edges), of_path(cost)),
-                       .mean = float(of_path(pilot.brightness))};
+                       .mean = rounded(of_path(pilot.brightness))};
 }
 
 }  // namespace frond

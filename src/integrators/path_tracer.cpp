@@ -359,7 +359,7 @@ class PathTracer final : public Tracer {
       set_ray(points_[lane].hit, sample.wi, path);
     }
     if (vertex_ == 0) record_.add_scattered(lane, which, share_of(path));
-    if (!survives(lane, path)) return false;
+    if (!survives(lane, which, path)) return false;
     path.depth += is_exit ? 0 : 1;  // as in pbrt-v4, entry and exit are one scattering
     return true;
   }
@@ -388,13 +388,13 @@ class PathTracer final : public Tracer {
   static float share_of(const Path& path) { return path.throughput.max() * path.eta_scale * path.split_weight; }
 
   /// Returns false if the path ends here, by Russian roulette or by the cutoff.
-  bool survives(size_t lane, Path& path) const {
+  bool survives(size_t lane, int which, Path& path) const {
     if (path.throughput.is_black()) return false;
     if (settings_.cut_off_attenuation) return attenuation(path) * path.eta_scale >= settings_.cutoff;
     float full = 1;
     if (path.depth < kSafeScatterings - 1)
       full = std::min(full, mean(bundle_->results[lane].radiance, path.lambda) / settings_.roulette.mean);
-    RandomStream random = path.key.stream(Use::roulette);
+    RandomStream random = path.key.stream(Use::roulette, which);
     return survives_roulette(settings_.roulette.scale * share_of(path), full, random, path.throughput);
   }
 

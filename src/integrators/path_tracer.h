@@ -12,12 +12,14 @@
 
 namespace frond {
 
-/// Russian roulette: a path survives with the probability scale T / full, where T is its throughput, and full is 1;
-/// after the first scatterings it is what the path has found, relative to the mean over the image, if that is less.
-/// Hence paths survive that have found nothing, such as those in shadows, and few end where that would be seen.
+/// Russian roulette: a path survives with the probability scale T / full, where T is its throughput; that of each of
+/// two rays of a first vertex counts half. `full` is 1; after the first kSafeScatterings - 1 scatterings at most what
+/// the path has found, relative to the mean over the image. Hence paths survive that have found nothing, such as those
+/// in shadows, and few end where that would be seen.
 struct Roulette {
-  float scale = 1;
-  float mean = INFINITY;  ///< radiance of a path, mean over the image; 0: full is 1 everywhere
+  float scale = 2;
+  /// Radiance of a path, mean over the image. Infinity: the first scatterings end no path; 0: `full` is always 1.
+  float mean = INFINITY;
 };
 
 /// Values of the parameters of integrator `path`.

@@ -118,8 +118,11 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
   // A target varies more from place to place than a pixel does, so a second ray from the same place does not pay.
   if (find_param(info, "scatteredrays") && !find_param(integrator.params, "scatteredrays"))
     set_param(integrator.params, parsed_numbers("integer", "scatteredrays", {1}));
-  // As early as this in canopies of bright and dark leaves: a pilot would take longer than the measurement.
-  if (find_param(info, "roulette") && !find_param(integrator.params, "roulette"))
+  // In the light of suns alone this suits canopies of bright and of dark leaves. Under a sky the first scattered rays
+  // find most of the light.
+  const bool has_only_suns = std::ranges::all_of(
+      description.lights, [](const LightDescription& light) { return light.plugin.name == "distant"; });
+  if (has_only_suns && find_param(info, "roulette") && !find_param(integrator.params, "roulette"))
     set_param(integrator.params, parsed_numbers("float", "roulette", {2}));
 }
 
