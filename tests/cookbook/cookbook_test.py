@@ -1,7 +1,7 @@
 """Runs every ```sh block of README.md and docs/cookbook.md, one after the other, in a folder of its own for each page; fails on the
 first that fails, and where an image of a command is nearly black or white. README.md's ```shell blocks install frond: scripts/package,
-scripts/wheel and tests/package do. Of docs/shot.md the blocks in Python run too, among the others, which use what they write. (Those of
-the cookbook: python/tests/test_cookbook.py.)
+scripts/wheel and tests/package do. Where FROND_SLOW_TESTS is 1 those of docs/shot.md too, with its blocks in Python among them. (Those of
+the cookbook: python/tests/test_cookbook.py. Always its first ones: python/tests/test_shot.py.)
 
 usage: cookbook_test.py BUILD_DIR FOLDER [PYTHON]
 The build is installed into FOLDER, and its frond is the one in the path. Without PYTHON, which the module frond is built for,
@@ -136,7 +136,7 @@ def main(build, folder, python=None):
         sys.exit(f"README.md has {len(readme)} lines: 100 at most")
     run("README.md", 2, 2, clone(folder / "readme"), small)
     run("docs/cookbook.md", 10, 4, clone(folder / "clone"), environment)
-    if python:
+    if python and os.environ.get("FROND_SLOW_TESTS") == "1":
         run("docs/shot.md", 6, 6, clone(folder / "shot"), environment | {"PYTHONPATH": str(pathlib.Path(build) / "python")}, python)
 
 
