@@ -191,7 +191,7 @@ class GlassFurnace : public ::testing::Test {
 
   static std::string lit_by_the_sky(const std::string& world) {
     return plane_from_above("LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n" + world, 0.9, kSize,
-                            "\"integer maxdepth\" 1000");
+                            "\"integer maxdepth\" 1000 \"float roulette\" 1");
   }
   static void expect_white_pixels(const Film& film, const std::string& what) {
     for (int y = 0; y < kSize; ++y)
