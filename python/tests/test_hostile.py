@@ -46,7 +46,7 @@ def python_bsdf(**members):
     return type("Paper", (frond.Bsdf,), {{"f": lambda self, wo, wi, nm: 0.1, **members}})()
 
 def conform(*args, **more):
-    return frond.conform(*args, **{{"samples": 1000, "angles": 0, "wavelengths": 551, "session": session, **more}})
+    return frond.conform(*args, **{{"samples": 1000, "excess": 0, "angles": 0, "wavelengths": 551, "session": session, **more}})
 
 class Warnings(logging.Handler):
     texts = []

@@ -12,10 +12,6 @@
 namespace frond {
 namespace {
 
-void check_stop_now_and_then(size_t index) {
-  if (index % 65536 == 0) check_stop();
-}
-
 struct PointHash {
   size_t operator()(const Vec3d& p) const { return hash_bytes({reinterpret_cast<const char*>(&p), sizeof p}); }
 };

@@ -5,17 +5,12 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/parallel.h"
 
 namespace frond {
 namespace {
 
 constexpr double kOpposite = -0.9;  ///< largest cosine of the normals of two sheets that face away from each other
 constexpr double kSlack = 1e-3;     ///< of barycentric coordinates
-
-void check_stop_now_and_then(size_t index) {
-  if (index % 65536 == 0) check_stop();
-}
 
 /// Triangles with the same vertices in the same order, of which one is compared with others.
 struct Group {

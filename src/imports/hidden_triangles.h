@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/vec.h"
+#include "core/parallel.h"
 
 namespace frond {
 
@@ -20,6 +21,11 @@ struct SheetTriangle {
 /// Distance at which sheets count as coincident, relative to the tolerance.
 inline constexpr double kCoincident = 0.01;
 inline constexpr double kNotHidden = std::numeric_limits<double>::infinity();
+
+/// Checks for a stop in a loop over this index.
+inline void check_stop_now_and_then(size_t index) {
+  if (index % 65536 == 0) check_stop();
+}
 
 /// Returns for each triangle the distance of its centroid behind the nearest triangle of an earlier sheet that faces
 /// the other way, within `tolerance`; kNotHidden if there is none. Returns nothing if so many triangles lie at one
