@@ -5,7 +5,6 @@
 #include <numeric>
 #include <tuple>
 
-
 namespace frond {
 namespace {
 
