@@ -41,9 +41,10 @@ constexpr Param kPath[] = {
      .kind = ParamKind::real,
      .default_value = 0,
      .range = {0, 1e6},
-     .doc = "Where termination is roulette: a path survives a scattering with the probability roulette x throughput. "
-            "0: by "
-            "the pilot, for the least noise in the same time; without a pilot 2, after the fifth scattering."},
+     .doc =
+         "Where termination is roulette: a path survives a scattering with the probability roulette x throughput; each "
+         "of two rays has half of the throughput. 0: by the pilot, for the least noise in the same time; without a "
+         "pilot 2, after the fifth scattering."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
