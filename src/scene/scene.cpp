@@ -67,16 +67,12 @@ bool Scene::find_nearest(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit
   if (!tiling_) return geometry_->intersect(ray, key, {is_detailed_.data()}, nearest, hit);
   float distance = INFINITY;
   return tiling_->march(ray, [&](const Tiling::Repeat& repeat) {
-    GeometryHit at;
-    Hit there_hit;
     Ray there = repeat.ray;
     there.t_max = std::min(there.t_max, distance - repeat.distance);
-    if (!geometry_->intersect(there, key, {is_detailed_.data()}, at, there_hit)) return false;
-    distance = repeat.distance + at.t;
-    there_hit.p += repeat.shift;
-    there_hit.extent = std::max(there_hit.extent, std::max(std::abs(there_hit.p.x), std::abs(there_hit.p.y)));
-    nearest = at;
-    hit = there_hit;
+    if (!geometry_->intersect(there, key, {is_detailed_.data()}, nearest, hit)) return false;
+    distance = repeat.distance + nearest.t;
+    hit.p += repeat.shift;
+    hit.extent = std::max(hit.extent, std::max(std::abs(hit.p.x), std::abs(hit.p.y)));
     return true;
   });
 }

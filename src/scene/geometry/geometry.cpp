@@ -87,6 +87,24 @@ SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, cons
       ->derivatives({lane.p, {at.Ng_x, at.Ng_y, at.Ng_z}, {at.u, at.v}, 0, at.primID});
 }
 
+/// Inverts an inverse map, in double precision.
+AffineMap inverse_of(const AffineMap::Inverse& map) {
+  const auto image = [](Float4 v) { return Vec3d{double(v[0]), double(v[1]), double(v[2])}; };
+  const Vec3d x = image(map.x), y = image(map.y), z = image(map.z), yz = cross(y, z);
+  const double scale = 1 / dot(x, yz);
+  const auto row = [scale](const Vec3d& v, float translation) {
+    return std::array{float(v.x * scale), float(v.y * scale), float(v.z * scale), translation};
+  };
+  const Float4& t = map.translation;
+  return {{row(yz, t[0]), row(cross(z, x), t[1]), row(cross(x, y), t[2])}};
+}
+
+/// Map of a row. Of a stored inverse, it is computed: the search has just read this one, whereas the table's row comes
+/// from memory, which takes longer.
+AffineMap map_of(const GeometryInstances& set, uint32_t row, float time, const AffineMap::Inverse& inverse) {
+  return set.inverses.empty() ? set.instances.map(row, time) : inverse_of(inverse);
+}
+
 /// Transforms derivatives from an object's space to the instance's. Normal derivatives scale with the normal.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDerivatives& d) {
   d.dpdu = map.vector(d.dpdu), d.dpdv = map.vector(d.dpdv);
@@ -101,7 +119,8 @@ void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDeriv
     const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(set.instances.map(row, time), set.inverse(row, time, made), d);
+    const AffineMap::Inverse& inverse = set.inverse(row, time, made);
+    place(map_of(set, row, time, inverse), inverse, d);
     if (set.instances.is_placed) place(set.instances.placement, set.from_placement, d);
   }
   hit.derivatives = d;
@@ -228,7 +247,8 @@ void Geometry::compute_hit(const RTCHit& at, const embree::Lane& lane, const Ray
     const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(set.instances.map(row, ray.time), set.inverse(row, ray.time, made), hit, extent, ns);
+    const AffineMap::Inverse& inverse = set.inverse(row, ray.time, made);
+    place(map_of(set, row, ray.time, inverse), inverse, hit, extent, ns);
     if (set.instances.is_placed) place(set.instances.placement, set.from_placement, hit, extent, ns);
   }
   set_frame(hit, ns, ray.d);
