@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/fluorescence.h"
 #include "integrators/fluorescence_tracer.h"
@@ -85,6 +86,10 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator, p
                  .roulette = p.real("roulette") == 0 && !settings_.cut_off_attenuation},
         strategy_(light_strategy(p)) {
     if (const double scale = p.real("roulette"); scale > 0) settings_.roulette = {.scale = float(scale), .mean = 0};
+    const auto [unused, needed] =
+        settings_.cut_off_attenuation ? std::array{"roulette", "roulette"} : std::array{"cutoff", "attenuation"};
+    if (p.given(unused))
+      p.warn(unused, fmt::format("\"{}\" has no effect without \"termination\" \"{}\"", unused, needed));
   }
 
   void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) override {

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,7 +10,9 @@ namespace frond {
 namespace {
 
 using test::channel_mean;
+using test::rays_of;
 using test::render_text;
+using ::testing::HasSubstr;
 
 /// A dark floor under a lamp, the left half of it in the shadow of a roof, and a bright wall behind it.
 Film room(const std::string& integrator, uint64_t seed = 1, int samples = 128) {
@@ -34,12 +37,6 @@ Shape "trianglemesh" "point3 P" [0 -9 2.5  0 9 2.5  -9 9 2.5  -9 -9 2.5] "intege
 }
 
 const std::string kNever = "\"float roulette\" 1e6";
-
-uint64_t rays_of(const Film& film) {
-  uint64_t rays = 0;
-  for (size_t i = 0; i < film.tiles(); ++i) rays += film.tile(i).rays();
-  return rays;
-}
 
 // 5 standard errors in each of eight comparisons: a false alarm in 200,000.
 TEST(Roulette, DoesNotChangeTheMean) {
@@ -72,6 +69,24 @@ TEST(Roulette, OfAPilotSavesRaysAndFewOfShadows) {
   EXPECT_GT(variances(alike)[0], 3 * shadow) << "the test has lost its power";
   EXPECT_LT(variances(piloted)[0], 1.6 * shadow);
   EXPECT_LT(variances(piloted)[1], 1.2 * light);
+}
+
+TEST(Roulette, ItsParametersAreNamedWhereTheyHaveNoEffect) {
+  const auto said = [](const std::string& parameters) {
+    const ConsoleLog log(true);
+    ThreadPool pool(1);
+    const SceneDescription description =
+        parse_scene_text("Integrator \"path\" " + parameters + "\nWorldBegin\nLightSource \"infinite\"", "s", log);
+    ::testing::internal::CaptureStderr();
+    const Scene scene(description, make_registry(builtin_materials(), builtin_integrators()), pool, log);
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(said("\"float cutoff\" 0.1"),
+              HasSubstr("\"cutoff\" has no effect without \"termination\" \"attenuation\""));
+  EXPECT_THAT(said("\"string termination\" \"attenuation\" \"float roulette\" 2"),
+              HasSubstr("\"roulette\" has no effect without \"termination\" \"roulette\""));
+  EXPECT_EQ(said("\"string termination\" \"attenuation\" \"float cutoff\" 0.1"), "");
+  EXPECT_EQ(said("\"float roulette\" 2"), "");
 }
 
 }  // namespace

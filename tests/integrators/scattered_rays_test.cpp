@@ -9,6 +9,7 @@ namespace frond {
 namespace {
 
 using test::channel_mean;
+using test::rays_of;
 using test::render_text;
 
 /// Two sheets under a lamp and a sky, above a ground: one that reflects and transmits the share `bright`, and one that
@@ -60,16 +61,10 @@ class ScatteredByPilot {
     return number(adapted_.mean(x, y) == one_.mean(x, y), adapted_.mean(x, y) == two_.mean(x, y));
   }
   /// In all pixels, from the number of rays; 0 if it is neither one nor two.
-  int everywhere() const { return number(traced(adapted_) == traced(one_), traced(adapted_) == traced(two_)); }
+  int everywhere() const { return number(rays_of(adapted_) == rays_of(one_), rays_of(adapted_) == rays_of(two_)); }
 
  private:
   static int number(bool is_one, bool is_two) { return is_one == is_two ? 0 : is_one ? 1 : 2; }
-  static uint64_t traced(const Film& film) {
-    uint64_t rays = 0;
-    for (size_t i = 0; i < film.tiles(); ++i) rays += film.tile(i).rays();
-    return rays;
-  }
-
   Film adapted_, one_, two_;
 };
 

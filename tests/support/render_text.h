@@ -38,6 +38,13 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
   return film;
 }
 
+/// Number of rays that were traced for a film.
+inline uint64_t rays_of(const Film& film) {
+  uint64_t rays = 0;
+  for (size_t i = 0; i < film.tiles(); ++i) rays += film.tile(i).rays();
+  return rays;
+}
+
 /// A channel's mean over the film and the standard error of that mean, from the pixels' own variances.
 struct ChannelMean {
   double mean = 0, error = 0;
