@@ -37,6 +37,7 @@ class DistantCamera final : public Camera {
            strata[0], strata[1]);
     for (int i = 0; i < strata[0] * strata[1]; ++i) cells_.push_back({float(i % strata[0]), float(i / strata[0])});
     corner_ = {float(target[0]), float(target[2]), float(target[4])};
+    rows_ = size_t(placement.height) / cells_.size();
     size_ = {float((target[1] - target[0]) / strata[0]), float((target[3] - target[2]) / strata[1])};
     distance_ = float(p.real("distance"));
   }
@@ -44,7 +45,7 @@ class DistantCamera final : public Camera {
   /// The point on the target is a lens sample, so that it is stratified independently of the pixel position.
   Ray ray(Vec2 film, Vec2 lens) const override {
     const auto column = size_t(std::clamp(film.x, 0.f, float(toward_.size() - 1)));
-    const Vec2 cell = cells_[size_t(std::max(film.y, 0.f)) % cells_.size()];
+    const Vec2 cell = cells_[std::min(size_t(std::max(film.y, 0.f)) / rows_, cells_.size() - 1)];
     const Vec3 on_target = corner_ + Vec3{(cell.x + lens.x) * size_.x, (cell.y + lens.y) * size_.y, 0};
     const Vec3& toward = toward_[column];
     return {world_from_camera_.point(on_target + toward * distance_),
@@ -68,7 +69,8 @@ class DistantCamera final : public Camera {
   std::vector<Vec3> toward_;  ///< from the target to the sensor, unit
   Vec3 corner_;               ///< corner of the target with the smallest x and y, camera space
   Vec2 size_;                 ///< extent of a cell along x and y
-  std::vector<Vec2> cells_;   ///< of the target, that of a row by the row modulo their number: indices along x and y
+  std::vector<Vec2> cells_;   ///< of the target: indices along x and y
+  size_t rows_;               ///< number of rows of the film that see a cell, one after the other
   float distance_;            ///< from the target to the ray origins, along the direction
 };
 
@@ -95,8 +97,8 @@ constexpr Param kDistant[] = {
      .kind = ParamKind::integer,
      .range = {1, 1024},
      .doc =
-         "Numbers of cells along x and y into which the target is divided; each row of the film sees one of them, in "
-         "turn. By default 1 and 1.",
+         "Numbers of cells along x and y into which the target is divided; each is seen by equally many adjacent rows "
+         "of the film. By default 1 and 1.",
      .list = true},
     {.name = "distance",
      .kind = ParamKind::real,

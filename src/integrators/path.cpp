@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/fluorescence.h"
 #include "integrators/fluorescence_tracer.h"
@@ -61,7 +60,7 @@ constexpr Param kPath[] = {
      .kind = ParamKind::real,
      .default_value = 0.01,
      .range = {0, 1},
-     .doc = "Attenuation below which a path ends."},
+     .doc = "Where termination is attenuation: the attenuation below which a path ends."},
     kRegularize,
     kHideBackground,
 };
@@ -86,10 +85,10 @@ class PathIntegrator final : public Integrator, public FluorescenceIntegrator, p
                  .roulette = p.real("roulette") == 0 && !settings_.cut_off_attenuation},
         strategy_(light_strategy(p)) {
     if (const double scale = p.real("roulette"); scale > 0) settings_.roulette = {.scale = float(scale), .mean = 0};
-    const auto [unused, needed] =
-        settings_.cut_off_attenuation ? std::array{"roulette", "roulette"} : std::array{"cutoff", "attenuation"};
-    if (p.given(unused))
-      p.warn(unused, fmt::format("\"{}\" has no effect without \"termination\" \"{}\"", unused, needed));
+    const auto warn_unused = [&p](std::string_view name, std::string_view needed) {
+      if (p.given(name)) p.warn(name, fmt::format("\"{}\" has no effect without \"termination\" \"{}\"", name, needed));
+    };
+    settings_.cut_off_attenuation ? warn_unused("roulette", "roulette") : warn_unused("cutoff", "attenuation");
   }
 
   void set_fluorescence(std::vector<std::shared_ptr<const Fluorescence>> by_material) override {

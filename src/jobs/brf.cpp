@@ -132,7 +132,7 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
   const bool refines = run.args.given("rms"), compares = run.args.given("compare");
   const auto paths = uint64_t(run.args.count("paths"));
   const RefineLimits limits{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
-                            uint64_t{1} << 32, run.args.real("rms")};
+                            uint64_t{1} << 32, run.args.real("rms"), true};
   if (run.args.given("merge")) return meter.read(merged_parts(run, meter, limits.amount).film, compares);
   RenderPart part = first_part(run, meter, resume_file);
   std::optional<Checkpointer> checkpointer;
@@ -140,6 +140,11 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
     checkpointer.emplace(resume_file->checkpoint(), checkpoint_seconds(run.args), part, control.progress, run.log());
     control.progress = &*checkpointer;
   }
+  // The next amount follows from an error that an interrupted run no longer knows: the part states it.
+  const auto request = [&](uint64_t samples) {
+    const auto change = [&] { part.header.request = samples; };
+    checkpointer ? checkpointer->change_part(change, part.header) : change();
+  };
   const bool writes_part = run.args.given("part");
   const auto write = [&part](const auto& path) { write_part(path, part.header, part.film); };
   SampleRange range{0, limits.amount};
@@ -149,9 +154,10 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
   }
   std::optional<BrfMeasurement> measurement;
   const RefineEnd end = refine(
-      limits, sample_count(part.film).most, control,
+      limits, std::max(part.header.request, sample_count(part.film).most), control,
       [&](uint64_t samples) {
         if (!writes_part) range.end = samples;
+        if (refines) request(samples);
         if (!range.empty()) run.session().render(meter.scene(), range, part, control);
       },
       [&] { return measurement.emplace(meter.read(part.film, compares)).relative_error(); });

@@ -74,8 +74,7 @@ bool has_heavy_tails(const Scene& scene, size_t materials) {
 
 double error_of_rows(std::span<const double> rows) {
   double squares = 0;
-  for (size_t cell = 0; cell < BrfMeter::kCells; ++cell)
-    squares += std::pow(rows[cell] - rows[cell + BrfMeter::kCells], 2);
+  for (size_t cell = 0; cell < BrfMeter::kCells; ++cell) squares += std::pow(rows[2 * cell] - rows[2 * cell + 1], 2);
   return std::sqrt(squares) / BrfMeter::kRows;
 }
 

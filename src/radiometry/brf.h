@@ -55,8 +55,8 @@ struct BrfMeasurement {
 double error_of_rows(std::span<const double> rows);
 
 /// Renders a scene as a distant radiometer sees it. The film has a column for each view and kRows independent rows. The
-/// target is divided into kCells cells, and two rows see each: their differences estimate the error, including the
-/// stratification over the target and within a row.
+/// target is divided into kCells cells, and two adjacent rows see each: their differences estimate the error, including
+/// the stratification over the target and within a row.
 class BrfMeter {
  public:
   static constexpr int kRows = 128, kCells = kRows / 2;

@@ -1,8 +1,10 @@
+#include <array>
+#include <memory>
+
+#include "core/arena.h"
 #include "integrators/path_state.h"
 #include "radiometry/flux_state.h"
 #include "radiometry/path_pairs.h"
-#include "radiometry/photons.h"
-#include "radiometry/ratio_sums.h"
 #include "radiometry/trace_blocks.h"
 
 namespace frond {

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "radiometry/flux.h"
 #include "radiometry/flux_sums.h"
@@ -10,7 +14,7 @@
 
 namespace frond {
 
-/// What flux.cpp prepares, flux_paths.cpp traces and flux_results.cpp reads.
+/// State of a measurement: flux.cpp prepares it, flux_paths.cpp adds paths to it, flux_results.cpp reads it.
 struct FluxMeter::State {
   LoadedScene loaded;
   EntryBox entry;

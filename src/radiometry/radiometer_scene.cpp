@@ -17,6 +17,13 @@
 namespace frond {
 namespace {
 
+/// Whether paths end by their attenuation, without roulette.
+bool ends_by_attenuation(const ParsedPlugin& integrator) {
+  const ParsedParam* termination = find_param(integrator.params, "termination");
+  const auto* words = termination ? std::get_if<std::vector<std::string>>(&termination->values) : nullptr;
+  return words && *words == std::vector<std::string>{"attenuation"};
+}
+
 /// Whether the model's parameter "incident" accepts "reciprocal".
 bool can_be_reciprocal(const PluginInfo& info) {
   const Param* incident = find_param(info, "incident");
@@ -122,7 +129,8 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
   // find most of the light.
   const bool has_only_suns = std::ranges::all_of(
       description.lights, [](const LightDescription& light) { return light.plugin.name == "distant"; });
-  if (has_only_suns && find_param(info, "roulette") && !find_param(integrator.params, "roulette"))
+  if (has_only_suns && find_param(info, "roulette") && !find_param(integrator.params, "roulette") &&
+      !ends_by_attenuation(integrator))
     set_param(integrator.params, parsed_numbers("float", "roulette", {2}));
 }
 

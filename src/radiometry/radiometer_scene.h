@@ -19,7 +19,7 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description, bool fluorescence = false);
 
-/// Name of a material in results: that of MakeNamedMaterial, or its plug-in's.
+/// Returns the name of a material in results: that of MakeNamedMaterial, or its plug-in's.
 inline const std::string& name_of(const MaterialDescription& material) {
   return material.name.empty() ? material.plugin.name : material.name;
 }

@@ -65,7 +65,7 @@ class BilinearMesh final : public AnalyticShape {
   }
 
   /// Reshetov 2019, "Cool Patches": u at which the ray hits the line between the patch's two u-curves, then v and t.
-  /// Parallelograms as triangles by Möller and Trumbore 1997, in half of the time.
+  /// Parallelograms are intersected like triangles (Möller and Trumbore 1997), in half of the time.
   std::optional<ShapePoint> intersect(unsigned i, const Ray& ray, float t_min) const override {
     const Patch patch = patch_of(i);
     const Vec3d o = to_double(ray.o), d = to_double(ray.d);
@@ -73,9 +73,10 @@ class BilinearMesh final : public AnalyticShape {
     const Vec3d q0 = patch.p[0] - o, q1 = patch.p[1] - o;
     if (left == right) {
       const Vec3d side = patch.p[1] - patch.p[0], h = cross(d, left), k = cross(side, q0);
-      const double inverse = 1 / dot(side, h);  // infinite if the ray is parallel: no u is between 0 and 1 then
+      const double det = dot(side, h), inverse = 1 / det;  // det is 0, but for rounding, of a ray in the plane
       const double u = -dot(q0, h) * inverse, v = dot(d, k) * inverse, t = dot(left, k) * inverse;
       if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1 && float(t) > t_min && t < double(ray.t_max))) return {};
+      if (!(det * det > 1e-26 * dot(side, side) * dot(h, h))) return {};
       return at(i, patch, u, v, float(t));
     }
     const double a = dot(cross(q0, d), left), c = dot(cross(patch.p[1] - patch.p[0], patch.p[2] - patch.p[3]), d);

@@ -22,11 +22,11 @@ std::string seen_by(const std::string& parameters, int columns, int rows) {
       columns, rows, parameters);
 }
 
-TEST(DistantCamera, EachRowSeesItsCellInTurn) {
+TEST(DistantCamera, AdjacentRowsSeeACell) {
   const Film film = test::render_text(seen_by("\"float zenith\" [0 30] \"integer strata\" [2 2]", 2, 8));
   for (int view = 0; view < 2; ++view)
     for (int row = 0; row < 8; ++row) {
-      EXPECT_EQ(film.mean(view, row)[1] > 0, row % 4 == 0) << row;
+      EXPECT_EQ(film.mean(view, row)[1] > 0, row < 2) << row;
       EXPECT_FALSE(film.variance(view, row)[1] > 0) << row;  // each cell is lit or dark as a whole
     }
 }

@@ -289,6 +289,13 @@ TEST_F(Radiometry, FirstHitsScatterOneRayUnlessTheSceneSaysTwo) {
   EXPECT_NE(by_default, measured("\"integer scatteredrays\" 2"));
   EXPECT_EQ(by_default, measured("\"float roulette\" 2"));
   EXPECT_NE(by_default, measured("\"float roulette\" 1"));
+  // Roulette that only the measurement stated would be named as having no effect.
+  ::testing::internal::CaptureStderr();
+  const ConsoleLog log(true);
+  Session session(log, {1, {}, {}});
+  const BrfMeter meter(session, description(world, "Integrator \"path\" \"string termination\" \"attenuation\"\n"),
+                       request);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(Radiometry, FiguresDoNotDependOnThreads) {

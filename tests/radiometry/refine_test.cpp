@@ -48,7 +48,7 @@ class Refinement : public ::testing::Test {
     const BrfMeter meter(session_, std::move(description), request_, &first_->scene().scene());
     RenderPart part = meter.scene().empty_part();
     (void)refine(
-        {samples, uint64_t{1} << 20, rms}, 0, {},
+        {samples, uint64_t{1} << 20, rms, true}, 0, {},
         [&](uint64_t amount) {
           session_.render(meter.scene(), {0, amount}, part);
         },
@@ -101,6 +101,46 @@ TEST(NextAmount, HasEightStepsToTheDouble) {
     EXPECT_EQ(next, 2 * amount);
   }
   EXPECT_EQ(next_amount(16), 24u);
+}
+
+/// Steps of next_amount from `first` to `last`; 0: `last` is none of them.
+int steps(uint64_t first, uint64_t last) {
+  int count = 0;
+  for (; first < last; first = next_amount(first)) ++count;
+  return first == last ? count : 0;
+}
+
+TEST(NextCheck, LeavesAQuarterOfWhatIsMissing) {
+  EXPECT_EQ(next_check(32, 2), 104u);  // 32 + 3/4 of 96
+  for (const double ratio : {5.0, 1e300, double(INFINITY)}) EXPECT_EQ(next_check(64, ratio), 256u);
+  for (uint64_t amount = 8; amount < 1 << 20; amount += amount / 3 / 8 * 8 + 8)
+    for (const double ratio : {1.001, 1.05, 1.2, 1.7, 2.0}) {
+      const uint64_t next = next_check(std::bit_floor(amount), ratio), first = std::bit_floor(amount);
+      const double most = double(first) * (1 + 0.75 * (ratio * ratio - 1));
+      ASSERT_GE(steps(first, next), 1);
+      EXPECT_TRUE(double(next) <= most || next == next_amount(first)) << first << ' ' << ratio;
+      EXPECT_GT(double(next_amount(next)), most);
+    }
+}
+
+/// An error that is exactly as amounts predict, and every earlier check a fixed share of the way.
+TEST(Refine, AnInterruptedOneEndsAtTheSameAmount) {
+  const RefineLimits limits{8, uint64_t{1} << 32, 0.01, true};
+  const auto error = [](uint64_t amount) {
+    return 0.37 / std::sqrt(double(amount)) * (1 + 0.2 * std::sin(double(amount)));
+  };
+  const auto ended = [&](uint64_t present, std::vector<uint64_t>& checked) {
+    uint64_t now = 0;
+    EXPECT_EQ(
+        refine(
+            limits, present, {}, [&](uint64_t amount) { checked.push_back(now = amount); }, [&] { return error(now); }),
+        RefineEnd::done);
+    return now;
+  };
+  std::vector<uint64_t> checked, rest;
+  const uint64_t end = ended(0, checked);
+  EXPECT_LT(checked.size(), 12u);
+  for (const uint64_t present : checked) EXPECT_EQ(ended(present, rest), end);
 }
 
 }  // namespace

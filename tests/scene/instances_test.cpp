@@ -272,6 +272,32 @@ TEST_F(Instances, CopiesAreMetWhereTheirSurfacesAre) {
   expect_same_in_packets(*scene(flat));
 }
 
+/// Positions of hits are computed by the map whose inverse is stored.
+TEST_F(Instances, HitsLieOnTheirRays) {
+  struct Copy {
+    const char* transform;
+    float size;
+  };
+  for (const auto& [transform, size] :
+       {Copy{"Scale -1 1 1 Rotate 40 1 2 3", 1}, Copy{"Rotate 40 1 2 3 Scale 1 1 1e-3", 1},
+        Copy{"ConcatTransform [1 0 0 0  5 1 0 0  0 2 1 0  0 0 0 1]", 6}, Copy{"Scale 1e-6 1e-6 1e-6", 1e-6f},
+        Copy{"Scale 1e6 1e6 1e6", 1e6f}}) {
+    const auto copy =
+        scene("ObjectBegin \"leaf\" Shape \"disk\" ObjectEnd\n" + std::string(transform) + " ObjectInstance \"leaf\"");
+    int hits = 0;
+    for_each_ray([&](const Ray& ray, uint64_t key) {
+      const Ray scaled{ray.o * size, ray.d, INFINITY};
+      SurfacePoint point;
+      if (!copy->intersect(scaled, key, point)) return;
+      ++hits;
+      const Vec3 way = point.hit.p - scaled.o;
+      EXPECT_LT(length(cross(way, scaled.d)), 1e-5f * size) << transform;
+      EXPECT_NEAR(length(point.hit.ng), 1, 1e-6);
+    });
+    EXPECT_GT(hits, 10) << transform;
+  }
+}
+
 TEST_F(Instances, PacketsPassWhatIsPartlyTransparentAsRaysDo) {
   expect_same_in_packets(*scene(R"(
 ObjectBegin "leaf"

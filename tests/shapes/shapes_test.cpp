@@ -466,6 +466,13 @@ TEST_F(Shapes, AParallelogramIsMetWithinItsEdges) {
   }
   SurfacePoint at;
   EXPECT_FALSE(meet(*s, corner - along_u, along_u, at));
+  const auto tilted = scene("Shape \"bilinearmesh\" \"point3 P\" [0 0 0  .3 .7 .1  .2 -.1 .6  .5 .6 .7]");
+  for (int i = 0; i < 1000; ++i) {  // rays in its plane, but for rounding
+    const auto in_plane = [](float u, float v) { return Vec3{.3f, .7f, .1f} * u + Vec3{.2f, -.1f, .6f} * v; };
+    const Vec3 o = in_plane(-1 - random.uniform(), random.uniform()), to = in_plane(.5f, random.uniform());
+    if (!meet(*tilted, o, to - o, at)) continue;
+    EXPECT_LT(length(cross(at.hit.p - o, normalize(to - o))), 1e-3f);
+  }
   EXPECT_FALSE(s->occluded({{2, 3, 9}, {0, 0, -1}, 4}, 0)) << "beyond the ray's end";
 }
 
