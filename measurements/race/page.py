@@ -36,10 +36,9 @@ def efficiencies(result, reference):
     return [ratio * a / b for a, b in zip(reference["cpu"], result["cpu"])]
 
 
-def median_efficiency(result, results):
-    reference = next(x for x in results if x["program"] == result["reference"] and
-                     (x["leaf"], x["filter"]) == (result["leaf"], result["filter"]))
-    return statistics.median(efficiencies(result, reference))
+def efficiencies_in(results, result):
+    return efficiencies(result, next(x for x in results if x["program"] == result["reference"] and
+                                     (x["leaf"], x["filter"]) == (result["leaf"], result["filter"])))
 
 
 def total(result, paths):
@@ -82,26 +81,26 @@ def summary(raced):
         results = of_scene["results"]
         for r in results:
             if r["program"] != r["reference"]:
-                found.setdefault(r["program"], []).append(median_efficiency(r, results))
+                found.setdefault(r["program"], []).append(statistics.median(efficiencies_in(results, r)))
     return "; ".join(f"{name} {min(values):.2f} to {max(values):.2f}" for name, values in found.items())
 
 
 def overview(raced):
-    """Efficiency of Mitsuba llvm_ad_rgb by scene and leaf: the least and the largest median of its filters."""
+    """Efficiency of Mitsuba llvm_ad_rgb by scene and leaf, over the rounds of all filters."""
     name, body, compiled = "Mitsuba llvm_ad_rgb", [], []
     for scene, of_scene in raced.items():
         results, row = of_scene["results"], [of_scene["what"].split(";")[0].split("\n")[0].rstrip(".")]
         for leaf in ("opaque", "leaf"):
             of_leaf = [r for r in results if (r["program"], r["leaf"]) == (name, leaf)]
             compiled += [r["set_up_cpu"] for r in of_leaf]
-            medians = [median_efficiency(r, results) for r in of_leaf]
-            row.append(f"{min(medians):.2f} to {max(medians):.2f}" if medians else "")
+            row.append(span([e for r in of_leaf for e in efficiencies_in(results, r)], ".2f") if of_leaf else "")
         if any(row[1:]):
             body.append([scene, *row])
     if not body:
         return ""
-    return (f"Efficiency of Mitsuba's vectorised variant `llvm_ad_rgb` relative to frond; above 1, Mitsuba reaches an error sooner. The\n"
-            f"{min(compiled):.1f} to {max(compiled):.1f} s that it takes to compile its kernels are not counted.\n\n" +
+    return (f"Efficiency of Mitsuba's vectorised variant `llvm_ad_rgb` relative to frond, median (least to largest of the rounds); above 1,\n"
+            f"Mitsuba reaches an error sooner. The {min(compiled):.1f} to {max(compiled):.1f} s that it takes to compile its kernels "
+            "are not counted.\n\n" +
             table(["scene", "", "opaque leaves", "transmitting leaves"], body))
 
 

@@ -139,6 +139,8 @@ def table(head, body):
 
 
 def machine():
-    """What the figures were measured on."""
-    model = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
-    return f"{model[1] if model else 'unknown processor'}, {os.cpu_count()} cores; {program('--version').strip()}"
+    """What the figures were measured on. Programs whose code fills a processor's vectors depend on their width."""
+    cpu = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    model = re.search(r"^model name\s*: (.*)$", cpu, re.MULTILINE)
+    vectors = " with AVX-512" if " avx512f " in cpu else " with AVX2" if " avx2 " in cpu else ""
+    return f"{model[1] if model else 'unknown processor'}{vectors}, {os.cpu_count()} cores; {program('--version').strip()}"
