@@ -123,7 +123,7 @@ TEST(NextCheck, LeavesAQuarterOfWhatIsMissing) {
     }
 }
 
-/// An error that is exactly as amounts predict, and every earlier check a fixed share of the way.
+/// With an error that differs from what amounts predict by up to a fifth.
 TEST(Refine, AnInterruptedOneEndsAtTheSameAmount) {
   const RefineLimits limits{8, uint64_t{1} << 32, 0.01, true};
   const auto error = [](uint64_t amount) {
