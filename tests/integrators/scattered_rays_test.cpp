@@ -65,6 +65,7 @@ class ScatteredByPilot {
 
  private:
   static int number(bool is_one, bool is_two) { return is_one == is_two ? 0 : is_one ? 1 : 2; }
+
   Film adapted_, one_, two_;
 };
 
