@@ -178,7 +178,7 @@ class SphericalCamera final : public Camera {
   bool equal_area_;
 };
 
-constexpr Interval kPositive{1e-30, 1e30};
+constexpr Interval kDistances{1e-30, 1e30};
 constexpr Param kFrameAspect{.name = "frameaspectratio",
                              .kind = ParamKind::real,
                              .range = {1e-3, 1e3},
@@ -195,7 +195,7 @@ constexpr Param kLensRadius{.name = "lensradius",
 constexpr Param kFocalDistance{.name = "focaldistance",
                                .kind = ParamKind::real,
                                .default_value = 1e6,
-                               .range = kPositive,
+                               .range = kDistances,
                                .doc = "Distance of the plane of focus."};
 constexpr Param kShutterOpen{.name = "shutteropen",
                              .kind = ParamKind::real,

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <numbers>
 
 #include "core/camera.h"
 #include "core/error.h"
+#include "core/math/vec.h"
 
 namespace frond {
 namespace {
@@ -57,8 +57,6 @@ class DistantCamera final : public Camera {
   bool pixels_are_apart() const override { return true; }
 
  private:
-  static constexpr double kDegree = std::numbers::pi / 180;
-
   /// Returns the direction from zenith and azimuth in radians.
   static Vec3 direction(double zenith, double azimuth) {
     return {float(std::sin(zenith) * std::cos(azimuth)), float(std::sin(zenith) * std::sin(azimuth)),

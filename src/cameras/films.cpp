@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/wavelengths.h"
 #include "spectra/color/film_sensor.h"
 
 namespace frond {
@@ -84,8 +85,7 @@ constexpr auto kGbuffer = [] {
   return params;
 }();
 
-/// Wavelengths that a bucket can have, and the largest number of buckets, as of wavelengths "bands".
-constexpr Interval kAllowed_nm{300, 2500};
+/// Number of buckets, as of wavelengths "bands".
 constexpr Interval kBuckets{1, 10000};
 /// Parameters of "rgb" and the buckets.
 constexpr auto kSpectral = [] {
@@ -100,13 +100,13 @@ constexpr auto kSpectral = [] {
              .kind = ParamKind::real,
              .default_value = 360.0,
              .unit = "nm",
-             .range = kAllowed_nm,
+             .range = kWavelengthRange_nm,
              .doc = "Shortest wavelength."};
   next[2] = {.name = "lambdamax",
              .kind = ParamKind::real,
              .default_value = 830.0,
              .unit = "nm",
-             .range = kAllowed_nm,
+             .range = kWavelengthRange_nm,
              .doc = "Longest wavelength; pbrt-v4 refuses more than 830 nm."};
   return params;
 }();

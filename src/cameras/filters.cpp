@@ -7,7 +7,7 @@
 namespace frond {
 namespace {
 
-constexpr Interval kPositive{1e-6, 1e6};
+constexpr Interval kFilterSizes{1e-6, 1e6};
 /// Limits the radius of splatting, so that a sample reaches at most half a tile.
 constexpr float kWidestSplat = 8.5f;
 
@@ -175,7 +175,7 @@ constexpr Param radius(std::string_view name, double value) {
           .kind = ParamKind::real,
           .default_value = value,
           .unit = "pixels",
-          .range = kPositive,
+          .range = kFilterSizes,
           .doc = "Radius: half the filter's width."};
 }
 
@@ -197,7 +197,7 @@ constexpr Param kGaussian[] = {radius("xradius", 1.5),
                                 .kind = ParamKind::real,
                                 .default_value = 0.5,
                                 .unit = "pixels",
-                                .range = kPositive,
+                                .range = kFilterSizes,
                                 .doc = "Standard deviation."},
                                kReconstruction};
 constexpr Param kMitchell[] = {
@@ -215,7 +215,7 @@ constexpr Param kSinc[] = {radius("xradius", 4),
                            {.name = "tau",
                             .kind = ParamKind::real,
                             .default_value = 3.0,
-                            .range = kPositive,
+                            .range = kFilterSizes,
                             .doc = "Number of cycles of the window."},
                            kReconstruction};
 

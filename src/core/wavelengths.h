@@ -13,6 +13,9 @@
 
 namespace frond {
 
+/// Wavelengths (nm) that a render or a measurement can have.
+inline constexpr Interval kWavelengthRange_nm{300, 2500};
+
 /// Values that one path contributes to some of the film's channels. Channels that are not listed receive no sample.
 struct SensorResponse {
   std::array<double, kLanes> value{};

@@ -7,8 +7,6 @@
 namespace frond {
 namespace {
 
-constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
-
 /// Returns a comment line that documents a column.
 std::string note(const Quantity& q) {
   return fmt::format("# {}{}{}: {}\n", q.name, q.unit.empty() || q.unit == "1" ? "" : ", ", q.unit == "1" ? "" : q.unit,
@@ -43,6 +41,6 @@ std::string csv_file(const ExportMaterial& material, const ExportRequest& reques
 }  // namespace
 
 extern const ExportFormat csv_format{
-    "csv", "R, T and f as a table, a line for each number", true, kOptions, check_table, csv_file};
+    "csv", "R, T and f as a table, a line for each number", true, kTableOptions, check_table, csv_file};
 
 }  // namespace frond

@@ -9,7 +9,7 @@ namespace {
 /// The shaders of a side. OpenPBR 1.1: a thin-walled subsurface transmits the share (1 + anisotropy) / 2 and reflects
 /// the rest in the same colour; with an anisotropy of 1 it only transmits, and the diffuse base reflects. The sum of
 /// two BSDFs, unlike a mix, needs no common share.
-constexpr const char* kSide = R"(  <open_pbr_surface name="openpbr_{0}" type="surfaceshader">
+constexpr const char* kSideSurface = R"(  <open_pbr_surface name="openpbr_{0}" type="surfaceshader">
     <input name="base_color" type="color3" value="{1}" />
     <input name="specular_weight" type="float" value="0" />
     <input name="subsurface_weight" type="float" value="{2:.6g}" />
@@ -43,7 +43,7 @@ constexpr const char* kMaterial = R"(  <surfacematerial name="leaf_{0}" type="ma
 std::string side_text(const char* name, const SideColors& side, const Log& log) {
   const auto value = [](const Triple& c) { return fmt::format("{:.6g}, {:.6g}, {:.6g}", c[0], c[1], c[2]); };
   const SharedColors shared = shared_colors(side, log);
-  return fmt::format(kSide, name, value(shared.reflected), shared.share, value(shared.transmitted),
+  return fmt::format(kSideSurface, name, value(shared.reflected), shared.share, value(shared.transmitted),
                      value(side.reflected), value(side.transmitted));
 }
 

@@ -13,8 +13,6 @@
 namespace frond {
 namespace {
 
-constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
-
 #ifdef FROND_NETCDF_FILE
 
 /// The NetCDF library, loaded on first use, because it loads further libraries that no other command needs.
@@ -171,6 +169,6 @@ std::string netcdf_file(const ExportMaterial&, const ExportRequest& request) {
 }  // namespace
 
 extern const ExportFormat netcdf_format{
-    "netcdf", "the same table as a classic NetCDF file", false, kOptions, check_netcdf, netcdf_file};
+    "netcdf", "the same table as a classic NetCDF file", false, kTableOptions, check_netcdf, netcdf_file};
 
 }  // namespace frond

@@ -10,7 +10,6 @@
 namespace frond {
 namespace {
 
-constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
 static_assert(std::endian::native == std::endian::little);
 
 /// Returns a file as numpy.save writes it, format version 1.0 (NumPy documentation, numpy.lib.format).
@@ -69,6 +68,7 @@ std::string npz_file(const ExportMaterial& material, const ExportRequest& reques
 
 }  // namespace
 
-extern const ExportFormat npz_format{"npz", "the same table for numpy.load", false, kOptions, check_table, npz_file};
+extern const ExportFormat npz_format{"npz",   "the same table for numpy.load", false, kTableOptions, check_table,
+                                     npz_file};
 
 }  // namespace frond

@@ -14,7 +14,7 @@
 namespace frond {
 namespace {
 
-constexpr ExportOption kOptions[] = {ExportOption::rays};
+constexpr ExportOption kOslOptions[] = {ExportOption::rays};
 constexpr size_t kAngles = 37;  // every 2.5 degrees
 constexpr double kLastAngle_deg = 89.5;
 constexpr int64_t kRays = 1'000'000;
@@ -176,6 +176,6 @@ std::string osl_file(const ExportMaterial& material, const ExportRequest& reques
 }  // namespace
 
 extern const ExportFormat osl_format{
-    "osl", "an OSL shader of three lobes for Blender's Cycles", true, kOptions, check_osl, osl_file};
+    "osl", "an OSL shader of three lobes for Blender's Cycles", true, kOslOptions, check_osl, osl_file};
 
 }  // namespace frond

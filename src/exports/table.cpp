@@ -1,14 +1,12 @@
 #include "exports/table.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "core/math/vec.h"
 #include "instruments/goniophotometer.h"
 
 namespace frond {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Returns multiples of `step` below `end`.
 std::vector<double> steps(double step, double end) {

@@ -4,11 +4,10 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 
 namespace frond {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// cos(180 k / thetas degrees), exactly 0 at the horizon, so that no patch receives rays from the other side.
 double cos_edge(int k, int thetas) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/math/vec.h"
 #include "instruments/cubature.h"
 
 namespace frond {
@@ -24,7 +25,6 @@ struct PatchTally {
 };
 
 SphereBox box_of(const Patch& p) {
-  constexpr double kDegree = std::numbers::pi / 180;
   return {std::cos(p.theta_max_deg * kDegree), std::cos(p.theta_min_deg * kDegree), p.phi_min_deg * kDegree,
           p.phi_max_deg * kDegree};
 }

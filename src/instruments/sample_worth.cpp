@@ -12,8 +12,6 @@
 namespace frond {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 /// Sample of a light: direction, radiance and density.
 struct TowardLight {
   Vec3 w;

@@ -23,7 +23,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kBenchParams[] = {
     kMaterialParam,
     kWithParam,
     JobParam("angles", numbers, "Angles of the path's ray from the front's normal; above 90 it meets the back.",
@@ -48,7 +48,7 @@ constexpr JobParam kParams[] = {
 };
 
 /// Returns --angles. Throws InputError for 90 degrees, at which a ray hits neither side.
-std::vector<double> angles_of(const Arguments& args) {
+std::vector<double> bench_angles(const Arguments& args) {
   const auto angles = args.numbers("angles");
   if (std::ranges::count(angles, 90) > 0)
     fail({}, "{}: at 90 degrees a path meets neither side", args.spelled("angles"));
@@ -56,7 +56,7 @@ std::vector<double> angles_of(const Arguments& args) {
 }
 
 /// Returns one strategy for each entry of --lanes. Without --wavelengths, the wavelengths of frond_bench are used.
-std::vector<GivenWavelengths> wavelengths_of(const Arguments& args) {
+std::vector<GivenWavelengths> bench_wavelengths(const Arguments& args) {
   const auto nm = args.numbers("wavelengths");
   const double most = nm.empty() ? kLanes : std::min(double(nm.size()), double(kLanes));
   const std::vector<float> given(nm.begin(), nm.end());
@@ -74,7 +74,7 @@ std::vector<GivenWavelengths> wavelengths_of(const Arguments& args) {
 class TimedMaterials {
  public:
   explicit TimedMaterials(const JobRun& run)
-      : wavelengths_(wavelengths_of(run.args)), angles_deg_(angles_of(run.args)), seed_(run.args.seed("seed")) {
+      : wavelengths_(bench_wavelengths(run.args)), angles_deg_(bench_angles(run.args)), seed_(run.args.seed("seed")) {
     for (const std::string& text : materials_of(run)) {
       if (std::ranges::count(labels_, text) > 0) fail({}, "{}: the same material twice", text);
       labels_.push_back(text);
@@ -227,6 +227,6 @@ Result bench(const JobRun& run) {
 
 extern const JobInfo kBenchJob("bench", "Materials",
                                "Time the calls of a material's BSDF, and measure the variance of its samples.", "",
-                               kParams, SessionUse::all, bench);
+                               kBenchParams, SessionUse::all, bench);
 
 }  // namespace frond

@@ -27,7 +27,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kBrfParams[] = {
     kSceneParam,
     kRadiometryWavelengthsParam,
     JobParam("zenith", numbers,
@@ -336,6 +336,6 @@ extern const JobInfo kBrfJob("brf", "Measure", "Measure the bidirectional reflec
                              "reflectance factor (HDRF). Leaves without \"incident\" use incident=reciprocal, or "
                              "incident=light if their model is "
                              "a random walk.",
-                             kParams, SessionUse::all, brf);
+                             kBrfParams, SessionUse::all, brf);
 
 }  // namespace frond

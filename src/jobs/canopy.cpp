@@ -19,7 +19,7 @@ using enum ArgumentKind;
 /// Of maps that are inverted in 32 bits.
 constexpr Interval kLengths{1e-9, 1e9};
 
-const JobParam kParams[] = {
+const JobParam kCanopyParams[] = {
     output_param("Instance table to write, a NumPy file (.npy).", true),
     JobParam("lai", real, "Leaf area index: one-sided leaf area over ground area.",
              {.default_value = "3", .range = kAboveZero}),
@@ -179,6 +179,6 @@ Result canopy(const JobRun& run) {
 
 extern const JobInfo kCanopyJob("canopy", "Scenes",
                                 "Write an instance table of randomly placed leaves, for Shape \"instances\".", "",
-                                kParams, SessionUse::none, canopy);
+                                kCanopyParams, SessionUse::none, canopy);
 
 }  // namespace frond

@@ -10,7 +10,7 @@ namespace frond {
 
 namespace {
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kCheckParams[] = {
     JobParam("scene", ArgumentKind::texts, "Scene files (pbrt-v4 format).",
              {.type = "SCENE", .path = PathUse::read, .scene = true, .positional = true, .required = true}),
     kIgnoreUnsupportedParam,
@@ -18,16 +18,16 @@ constexpr JobParam kParams[] = {
 };
 
 /// Result of reading one scene.
-struct Findings {
+struct CheckFindings {
   Problems problems;  ///< of its files, plug-ins, parameters and image name; in strict mode also its warnings
   size_t warnings = 0;
 };
 
-Findings findings_of(const JobRun& run, const SceneInput& input) {
+CheckFindings findings_of(const JobRun& run, const SceneInput& input) {
   StrictLog& log = run.context.log();
   log.begin(run.args.flag("strict"));
   Session& session = run.session();
-  Findings findings;
+  CheckFindings findings;
   Problems& problems = findings.problems;
   const SceneDescription description = read_scene(run, input, problems);
   if (!description.files.empty()) problems.attempt([&] { session.check(description); });
@@ -66,7 +66,7 @@ Result check(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kCheckJob("check", "Scenes", "Read scenes and all files that they name, and report all errors.",
-                               "Nothing is rendered. The exit status is 1 if there is an error.", kParams,
+                               "Nothing is rendered. The exit status is 1 if there is an error.", kCheckParams,
                                SessionUse::plugins, check);
 
 }  // namespace frond

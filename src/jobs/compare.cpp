@@ -30,7 +30,7 @@ using compare::Plan;
 using compare::Request;
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kCompareParams[] = {
     kSceneParam,
     JobParam("materials", texts,
              "Candidates, separated by ;: [LABEL:]MATERIAL[,parameter=value...], optionally followed by "
@@ -85,7 +85,7 @@ struct Setting {
 constexpr Setting kQuick{128, 32, 128}, kFull{256, 256, 1024};
 
 /// Returns --target: a set of the paper by name, or three numbers. Throws InputError.
-std::array<double, 3> target_of(const Arguments& args) {
+std::array<double, 3> wanted_of(const Arguments& args) {
   const std::string text = args.text("target");
   if (text == "front") return {0.009, 0.009, 0.012};
   if (text == "back") return {0.011, 0.014, 0.010};
@@ -176,7 +176,7 @@ Result compare_models(const JobRun& run) {
   Plan plan = plan_of(run, setting);
   Request request{.rms = args.numbers("rms"), .relative = args.flag("relative")};
   if (args.given("exposure")) request.exposure_stops = args.real("exposure");
-  if (args.given("target")) request.target = target_of(args);
+  if (args.given("target")) request.target = wanted_of(args);
   const std::string output = args.text("output");
   std::list<PlannedOutput> report;
   if (!output.empty()) {
@@ -215,6 +215,6 @@ Result compare_models(const JobRun& run) {
 }  // namespace
 
 const JobInfo kCompareJob("compare", "Leaf models", "Measure the cost and the error of each leaf model in a scene.", "",
-                          kParams, SessionUse::all, compare_models);
+                          kCompareParams, SessionUse::all, compare_models);
 
 }  // namespace frond

@@ -24,7 +24,7 @@ using Words = std::vector<std::string>;
 using Offers = std::map<std::string, std::string>;  ///< completions and their descriptions
 
 constexpr std::string_view kShells[] = {"bash", "zsh", "fish"};
-constexpr JobParam kParams[] = {
+constexpr JobParam kCompletionParams[] = {
     JobParam("shell", text, "Shell that the script is for.",
              {.choices = kShells, .positional = true, .required = true}),
     JobParam("words", texts, "Command line whose last word to complete. Used by the scripts.", {.positional = true}),
@@ -130,7 +130,7 @@ Result completion(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kCompletionJob("completion", "Shell",
-                                    "Print a script that completes frond's command line in a shell.", "", kParams,
-                                    SessionUse::none, completion);
+                                    "Print a script that completes frond's command line in a shell.", "",
+                                    kCompletionParams, SessionUse::none, completion);
 
 }  // namespace frond

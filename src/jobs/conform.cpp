@@ -24,7 +24,7 @@ constexpr double kMostSamples = 1 << 26;  // which are kept: 5 GB
 /// Largest angle, just below the horizon.
 constexpr double kGrazing_deg = 89.9999;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kConformParams[] = {
     kMaterialParam,
     JobParam("given-only", flag,
              "Test the given parameters and defaults only. By default parameters that are not given are also tested at "
@@ -189,7 +189,7 @@ Result conform(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kConformJob("conform", "Materials", "Test whether a material obeys the laws of scattering.",
-                                 "Exit code 0: no law was found broken; 2: a law is broken.", kParams, SessionUse::all,
-                                 conform);
+                                 "Exit code 0: no law was found broken; 2: a law is broken.", kConformParams,
+                                 SessionUse::all, conform);
 
 }  // namespace frond

@@ -16,7 +16,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kConvertParams[] = {
     files_param("images", "EXR files of one size and colour space."),
     output_param("Image to write: .png, .jpg or .exr; it has the channels R, G and B.", true),
     JobParam(
@@ -156,6 +156,6 @@ Result convert(const JobRun& run) {
 
 extern const JobInfo kConvertJob("convert", "Images",
                                  "Average linear images, and write the mean as EXR or through a display transform.", "",
-                                 kParams, SessionUse::none, convert);
+                                 kConvertParams, SessionUse::none, convert);
 
 }  // namespace frond

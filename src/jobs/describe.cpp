@@ -20,7 +20,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kDescribeParams[] = {
     JobParam("name", text,
              "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command; or a leaf with "
              "parameters, MATERIAL,specimen=maize: its contents per area and PROSPECT's numbers.",
@@ -57,7 +57,7 @@ constexpr std::string_view type_name(ParamKind kind) {
 }
 
 /// Documentation of one parameter of a plug-in or a command.
-struct Row {
+struct ParamRow {
   std::string name, type, default_value, unit, range, doc;
   std::string head;  ///< syntax in a scene file or on a command line
 };
@@ -87,8 +87,8 @@ std::string range_text(const Param& p) {
 }
 
 /// Parameters of a plug-in. Materials also have the parameters that every material has (normal maps).
-std::vector<Row> rows_of(const PluginInfo& info) {
-  std::vector<Row> rows;
+std::vector<ParamRow> param_rows(const PluginInfo& info) {
+  std::vector<ParamRow> rows;
   const auto add = [&rows](std::span<const Param> params) {
     for (const Param& p : params)
       rows.push_back({std::string(p.name), std::string(type_name(p.kind)), default_text(p), std::string(p.unit),
@@ -101,7 +101,7 @@ std::vector<Row> rows_of(const PluginInfo& info) {
 }
 
 /// Returns the row of a command's parameter. Positional parameters have no dashes.
-Row row_of(const JobParam& p) {
+ParamRow row_of(const JobParam& p) {
   const std::string name = p.positional ? std::string(p.name) : fmt::format("{}", fmt::join(option_names(p), ", "));
   const std::string value = value_name(p);
   return {name,
@@ -116,16 +116,16 @@ Row row_of(const JobParam& p) {
 }
 
 /// Rows of a command's table of options, in the order of its record.
-std::vector<Row> rows_of(std::span<const JobParam> params) {
-  std::vector<Row> rows;
+std::vector<ParamRow> param_rows(std::span<const JobParam> params) {
+  std::vector<ParamRow> rows;
   for (const JobParam& p : params) rows.push_back(row_of(p));
   return rows;
 }
 
 /// Returns the rows as indented text.
-std::string text_of(const std::vector<Row>& rows) {
+std::string text_of(const std::vector<ParamRow>& rows) {
   std::string text;
-  for (const Row& row : rows) {
+  for (const ParamRow& row : rows) {
     text += fmt::format("\n  {}\n      {}\n", row.head, row.doc);
     std::vector<std::string> facts;
     if (!row.default_value.empty())
@@ -138,7 +138,7 @@ std::string text_of(const std::vector<Row>& rows) {
 }
 
 /// Returns the rows as a Markdown table.
-std::string markdown_of(const std::vector<Row>& rows, std::string_view head) {
+std::string markdown_of(const std::vector<ParamRow>& rows, std::string_view head) {
   if (rows.empty()) return "";
   const auto escape = [](std::string_view s) {
     std::string out;
@@ -146,7 +146,7 @@ std::string markdown_of(const std::vector<Row>& rows, std::string_view head) {
     return out;
   };
   std::string text = fmt::format("{}\n|---|---|---|---|---|---|\n", head);
-  for (const Row& row : rows)
+  for (const ParamRow& row : rows)
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", row.name, escape(row.type), row.default_value, row.unit,
                         escape(row.range), escape(row.doc));
   return text + '\n';
@@ -154,17 +154,17 @@ std::string markdown_of(const std::vector<Row>& rows, std::string_view head) {
 
 std::string text_of(const PluginInfo& info) {
   const std::string source = info.source.empty() ? "" : fmt::format("  Source: {}\n", info.source);
-  return fmt::format("{} \"{}\"\n  {}\n{}", info.kind, info.name, info.doc, source) + text_of(rows_of(info));
+  return fmt::format("{} \"{}\"\n  {}\n{}", info.kind, info.name, info.doc, source) + text_of(param_rows(info));
 }
 
 std::string markdown_of(const PluginInfo& info) {
   const std::string source = info.source.empty() ? "" : fmt::format(" Source: {}.", info.source);
   return fmt::format("## {} `{}`\n\n{}{}\n\n", info.kind, info.name, info.doc, source) +
-         markdown_of(rows_of(info), "| parameter | type | default | unit | range | |");
+         markdown_of(param_rows(info), "| parameter | type | default | unit | range | |");
 }
 
 std::string text_of(const JobInfo& job) {
-  std::vector<Row> rows;
+  std::vector<ParamRow> rows;
   for (const JobParam* p : params_of(job)) rows.push_back(row_of(*p));
   const std::string details = job.details.empty() ? "" : fmt::format("  {}\n", job.details);
   return fmt::format("command \"{}\"\n  {}\n{}  {}\n", job.name, job.doc, details, usage(job)) + text_of(rows);
@@ -176,7 +176,7 @@ constexpr std::string_view kCommandHead = "| parameter | value | default | unit 
 std::string markdown_of(const JobInfo& job) {
   std::string text = fmt::format("### frond {}\n\n{} {}\n\n    {}\n\n", job.name, job.doc, job.details, usage(job));
   if (job.details.empty()) text.erase(text.find(" \n\n"), 1);
-  text += markdown_of(rows_of(job.params), kCommandHead);
+  text += markdown_of(param_rows(job.params), kCommandHead);
   if (job.extends) text += fmt::format("All parameters of [frond {0}](#frond-{0}) too.\n\n", job.extends->name);
   std::vector<std::string> names;
   for (const JobParam& p : session_params(job.session)) names.push_back(fmt::format("`--{}`", p.name));
@@ -267,7 +267,7 @@ std::string commands_page() {
     group = job->group;
     text += markdown_of(*job);
   }
-  text += "## Common parameters\n\n" + markdown_of(rows_of(session_params(SessionUse::all)), kCommandHead);
+  text += "## Common parameters\n\n" + markdown_of(param_rows(session_params(SessionUse::all)), kCommandHead);
   text.pop_back();
   return text;
 }
@@ -309,6 +309,6 @@ Result describe(const JobRun& run) {
 
 extern const JobInfo kDescribeJob("describe", "Materials",
                                   "Print the parameters of a plug-in or a command: types, defaults, units and ranges.",
-                                  "", kParams, SessionUse::plugins, describe);
+                                  "", kDescribeParams, SessionUse::plugins, describe);
 
 }  // namespace frond

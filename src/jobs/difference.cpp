@@ -22,7 +22,7 @@ constexpr std::string_view kSpace = "linear SMPTE-C";
 constexpr size_t kColors = 3;
 /// The last one is all colour values together: its mean squares are the means of the three.
 constexpr std::array<const char*, kColors + 1> kChannels{"red", "green", "blue", "all"};
-constexpr JobParam kParams[] = {
+constexpr JobParam kDifferenceParams[] = {
     files_param("images", "A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.", 4),
     output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
     JobParam("scale", real, "Luminance difference that is drawn in full colour.",
@@ -166,6 +166,6 @@ Result difference(const JobRun& run) {
 
 extern const JobInfo kDifferenceJob("difference", "Images",
                                     "Measure the RMS error between two renders, with noise and bias separated.", "",
-                                    kParams, SessionUse::none, difference);
+                                    kDifferenceParams, SessionUse::none, difference);
 
 }  // namespace frond

@@ -44,7 +44,7 @@ std::string format_doc() {
 const std::vector<std::string_view> kFormatNames = format_names();
 const std::string kFormatDoc = format_doc();
 
-const JobParam kParams[] = {
+const JobParam kExportParams[] = {
     JobParam(
         "material", texts,
         "NAME[,parameter=value...]: material, as in leaf,specimen=maize; for mitsuba a scene file (pbrt-v4 format).",
@@ -170,7 +170,7 @@ Result export_material(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kExportJob("export", "Materials",
-                                "Write a material's BSDF, or a scene, as files for other programs.", "", kParams,
+                                "Write a material's BSDF, or a scene, as files for other programs.", "", kExportParams,
                                 SessionUse::all, export_material);
 
 }  // namespace frond

@@ -33,7 +33,7 @@ using enum ArgumentKind;
 constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] = {"on", "off"},
                            kAbsorption[] = {"prospect", "baranoski"};
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kFitParams[] = {
     JobParam("file", texts,
              "Measured spectra: CSV as written by frond spectrophotometer or by spectroradiometers. Of several files, "
              "all leaves are fitted.",
@@ -384,7 +384,7 @@ Result fit(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kFitJob("fit", "Leaf models", "Fit a leaf to measured reflectance and transmittance.", "", kParams,
-                             SessionUse::threads, fit);
+extern const JobInfo kFitJob("fit", "Leaf models", "Fit a leaf to measured reflectance and transmittance.", "",
+                             kFitParams, SessionUse::threads, fit);
 
 }  // namespace frond

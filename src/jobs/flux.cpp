@@ -29,7 +29,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kFluxParams[] = {
     kSceneParam,
     kRadiometryWavelengthsParam,
     JobParam(
@@ -413,6 +413,6 @@ extern const JobInfo kFluxJob("flux", "Measure",
                               "from 400 to 700 nm, also shares "
                               "of the photons (PAR). The share of a band with a response is that of the light under "
                               "it: the mean weighted by response times irradiance.",
-                              kParams, SessionUse::all, flux);
+                              kFluxParams, SessionUse::all, flux);
 
 }  // namespace frond

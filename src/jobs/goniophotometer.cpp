@@ -18,7 +18,7 @@ using enum ArgumentKind;
 
 constexpr std::string_view kScales[] = {"linear", "log"};
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kGoniophotometerParams[] = {
     kMaterialParam,
     kOptionalWavelengthsParam,
     kAnglesParam,
@@ -211,7 +211,7 @@ Result goniophotometer(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kGoniophotometerJob("goniophotometer", "Measure",
-                                         "Measure a material's BRDF and BTDF over the whole sphere.", "", kParams,
-                                         SessionUse::all, goniophotometer);
+                                         "Measure a material's BRDF and BTDF over the whole sphere.", "",
+                                         kGoniophotometerParams, SessionUse::all, goniophotometer);
 
 }  // namespace frond

@@ -23,7 +23,7 @@ constexpr std::string_view kUnits[] = {"m", "cm", "mm", "inch"};
 constexpr double kMetres[] = {1, 0.01, 0.001, 0.0254};
 constexpr std::string_view kAxes[] = {"y", "z"};
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kImportParams[] = {
     JobParam("model", text, "Model to read: .obj, .gltf or .glb.",
              {.type = "FILE", .path = PathUse::read, .positional = true, .required = true}),
     JobParam("output", text,
@@ -254,6 +254,6 @@ extern const JobInfo kImportJob(
     "import", "Scenes", "Write a plant model of another program, OBJ or glTF, as a scene, or list what it contains.",
     "The model is read in a process of its own; files that it names are read in its folder and below only. Names of "
     "materials, their colours, opacity and normal maps, and instances are kept.",
-    kParams, SessionUse::plugins, import_model);
+    kImportParams, SessionUse::plugins, import_model);
 
 }  // namespace frond

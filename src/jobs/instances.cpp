@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
+#include "core/math/vec.h"
 #include "jobs/record/common_params.h"
 #include "scene/geometry/instance_writer.h"
 #include "system/file_bytes.h"
@@ -19,13 +19,11 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kInstancesParams[] = {
     JobParam("csv", text, "CSV file to read.",
              {.type = "FILE", .path = PathUse::read, .positional = true, .required = true}),
     output_param("Instance table to write, a NumPy file (.npy).", true),
 };
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// A table of numbers, read row by row.
 class NumberTable {
@@ -283,6 +281,6 @@ extern const JobInfo kInstancesJob(
     "orientation as nx,ny,nz or zenith,azimuth (degrees) of the z axis, which is a leaf's normal, and spin about it "
     "(degrees), or as qw,qx,qy,qz, or m00,m01 to m22. All other columns are numbers for Texture \"instance\". Without "
     "names: radius x y z nx ny nz. Fields are separated by commas, semicolons, tabs or blanks.",
-    kParams, SessionUse::none, instances);
+    kInstancesParams, SessionUse::none, instances);
 
 }  // namespace frond

@@ -11,9 +11,9 @@ namespace frond {
 namespace {
 
 constexpr std::string_view kWhat[] = {"specimens"};
-constexpr JobParam kParams[] = {JobParam("what", ArgumentKind::text,
-                                         "What to list instead of plug-ins; specimens: values of \"string specimen\".",
-                                         {.choices = kWhat, .positional = true})};
+constexpr JobParam kListParams[] = {
+    JobParam("what", ArgumentKind::text, "What to list instead of plug-ins; specimens: values of \"string specimen\".",
+             {.choices = kWhat, .positional = true})};
 
 /// Returns the specimens with their sources.
 Result list_specimens() {
@@ -46,7 +46,7 @@ Result list(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kListJob("list", "Materials", "List all plug-ins that a scene can name.", "", kParams,
+extern const JobInfo kListJob("list", "Materials", "List all plug-ins that a scene can name.", "", kListParams,
                               SessionUse::plugins, list);
 
 }  // namespace frond

@@ -15,7 +15,7 @@ namespace frond {
 
 namespace {
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kManParams[] = {
     JobParam("command", ArgumentKind::text, "Command that the page describes; frond itself by default.",
              {.type = "COMMAND", .positional = true}),
     JobParam("folder", ArgumentKind::text, "Folder for the pages of all commands.",
@@ -176,7 +176,7 @@ Result man(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kManJob("man", "Shell", "Print a man page.", "To read it: frond man render | man -l -", kParams,
+extern const JobInfo kManJob("man", "Shell", "Print a man page.", "To read it: frond man render | man -l -", kManParams,
                              SessionUse::none, man);
 
 }  // namespace frond

@@ -13,7 +13,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kMergeParams[] = {
     files_param("parts", "Parts of one render, without common samples."),
     output_param("Image to write: .exr (linear), .png or .jpg (through the display transform).", false, "part"),
     JobParam("part", text, "Part to write instead of an image.", {.type = "FILE", .path = PathUse::write}),
@@ -78,6 +78,6 @@ Result merge(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kMergeJob("merge", "Cluster", "Merge parts of a render, written by frond render --part.", "",
-                               kParams, SessionUse::none, merge);
+                               kMergeParams, SessionUse::none, merge);
 
 }  // namespace frond

@@ -28,7 +28,7 @@ namespace {
 using enum ArgumentKind;
 using Clock = std::chrono::steady_clock;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kRenderParams[] = {
     JobParam(
         "scene", texts,
         "Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the "
@@ -409,6 +409,7 @@ Result render(const JobRun& run) {
 
 }  // namespace
 
-const JobInfo kRenderJob("render", "Render", "Render a pbrt-v4 scene file.", "", kParams, SessionUse::all, render);
+const JobInfo kRenderJob("render", "Render", "Render a pbrt-v4 scene file.", "", kRenderParams, SessionUse::all,
+                         render);
 
 }  // namespace frond

@@ -15,7 +15,7 @@ namespace {
 
 using enum ArgumentKind;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kSpectrophotometerParams[] = {
     kMaterialParam,
     kOptionalWavelengthsParam,
     kAnglesParam,
@@ -135,6 +135,6 @@ Result spectrophotometer(const JobRun& run) {
 
 extern const JobInfo kSpectrophotometerJob("spectrophotometer", "Measure",
                                            "Measure a material's reflectance, transmittance and absorptance.", "",
-                                           kParams, SessionUse::all, spectrophotometer);
+                                           kSpectrophotometerParams, SessionUse::all, spectrophotometer);
 
 }  // namespace frond

@@ -26,7 +26,7 @@ using enum ArgumentKind;
 /// Largest zenith angle: rays closer to the horizon cross thousands of periods.
 constexpr double kLargestZenith = 89.9;
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kStructureParams[] = {
     kSceneParam,
     JobParam("zenith", numbers,
              "Zenith angles of the gap fraction, G, the clumping index, and the leaf area sunlit from there.",
@@ -193,6 +193,6 @@ extern const JobInfo kStructureJob(
     "Rays through the target measure the gap fraction: the share of them that meet no leaf; other surfaces do not stop "
     "them. Points of the leaves measure the leaf area index, the leaf angles, their mean projection G, and the share "
     "of the leaf area that the sun reaches. The clumping index is -ln(gap fraction) cos(zenith) / (G LAI).",
-    kParams, SessionUse::threads, structure);
+    kStructureParams, SessionUse::threads, structure);
 
 }  // namespace frond

@@ -50,7 +50,7 @@ constexpr JobParam kTasks("tasks", count, "Number of tasks, among which the samp
             {.type = "FOLDER", .path = PathUse::write});
 
 /// Parameters of submit itself; JobInfo::extends adds those of the divided job.
-const JobParam kParams[] = {
+const JobParam kSubmitParams[] = {
     kScene,
     JobParam("output", text, "Image that the merge writes.",
              {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .required = true}),
@@ -295,7 +295,7 @@ Result submit_divided(const JobRun& run, const Divided& divided) {
   return {.facts = {{"command", command}}, .text = text};
 }
 
-Result submit(const JobRun& run) { return submit_divided(run, {kRenderJob, "spp", kParams}); }
+Result submit(const JobRun& run) { return submit_divided(run, {kRenderJob, "spp", kSubmitParams}); }
 Result submit_flux(const JobRun& run) { return submit_divided(run, {kFluxJob, "paths", kParamsOfMeasurements}); }
 Result submit_brf(const JobRun& run) { return submit_divided(run, {kBrfJob, "paths", kParamsOfMeasurements}); }
 
@@ -315,7 +315,7 @@ extern const JobInfo kSubmitBrfJob("submit-brf", "Cluster",
 extern const JobInfo kSubmitJob("submit", "Cluster",
                                 "Write a job that renders ranges of samples and merges them, for Slurm, Open Job "
                                 "Description or Snakemake; --run starts it.",
-                                "The options of frond render are passed on to the tasks.", kParams, SessionUse::all,
-                                submit, &kRenderJob);
+                                "The options of frond render are passed on to the tasks.", kSubmitParams,
+                                SessionUse::all, submit, &kRenderJob);
 
 }  // namespace frond

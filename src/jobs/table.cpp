@@ -30,7 +30,7 @@ using enum ArgumentKind;
 
 constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
 
-constexpr JobParam kParams[] = {
+constexpr JobParam kTableParams[] = {
     JobParam("leaf", texts,
              "MATERIAL,parameter=value,...: a leaf model that looks up a table, with the leaf's parameters; without a "
              "name the one with a table of R and T, for FILE.leaf the one with a mode table.",
@@ -114,7 +114,7 @@ TableLeaf leaf_of(const JobRun& run) {
 }
 
 /// Returns --wavelengths in the given order. Throws InputError for duplicates.
-std::vector<double> wavelengths_of(const Arguments& args) {
+std::vector<double> table_wavelengths(const Arguments& args) {
   const auto nm = args.numbers("wavelengths");
   auto sorted = nm;
   std::ranges::sort(sorted);
@@ -124,7 +124,7 @@ std::vector<double> wavelengths_of(const Arguments& args) {
 }
 
 /// Returns --angles, which must ascend. With --equalsides: angles up to 90 and their counterparts on the other side.
-std::vector<double> angles_of(const Arguments& args) {
+std::vector<double> table_angles(const Arguments& args) {
   auto theta_deg = args.numbers("angles");
   const auto wrong = std::ranges::adjacent_find(theta_deg, std::greater_equal());
   if (wrong != theta_deg.end())
@@ -152,8 +152,8 @@ Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
   const PluginInfo only_tissue{"the table of", leaf.model.name, "", "", leaf_params()};
   const Arguments& args = run.args;
   leaf::TableRequest request{.params = LeafParams(constant_params(only_tissue, leaf.text)).tissue(),
-                             .wavelengths_nm = wavelengths_of(args),
-                             .theta_deg = angles_of(args),
+                             .wavelengths_nm = table_wavelengths(args),
+                             .theta_deg = table_angles(args),
                              .rays = int(args.count("rays")),
                              .nodes = int(args.count("nodes")),
                              .seed = args.seed("seed")};
@@ -173,7 +173,7 @@ Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
 /// Writes the mode table.
 Result make_modes_file(const JobRun& run, const Params& params) {
   const leaf::ModeTableRequest request{.params = LeafParams(params).tissue(),
-                                       .wavelengths_nm = wavelengths_of(run.args),
+                                       .wavelengths_nm = table_wavelengths(run.args),
                                        .tolerance = params.real("tolerance"),
                                        .nodes = int(run.args.count("nodes"))};
   const double start = cpu_seconds();
@@ -187,7 +187,7 @@ Result make_modes_file(const JobRun& run, const Params& params) {
 
 /// Writes a .leaf file for other programs (docs/file_formats.md).
 Result make_leaf_file(const JobRun& run, const Params& params) {
-  LeafFileRequest request{.wavelengths_nm = wavelengths_of(run.args),
+  LeafFileRequest request{.wavelengths_nm = table_wavelengths(run.args),
                           .tolerance = params.real("tolerance"),
                           .nodes = int(run.args.count("nodes"))};
   if (const auto depths = run.args.numbers("depths"); !depths.empty()) request.depths = {depths[0], depths[1]};
@@ -232,6 +232,6 @@ extern const JobInfo kTableJob(
     "table", "Leaf models", "Compute the table of a leaf material and write it to a file for its \"tablefile\".",
     "R and T by angle and wavelength, as CSV; or the mode table of a BSDF, and as FILE.leaf the complete material for "
     "other programs.",
-    kParams, SessionUse::threads, table);
+    kTableParams, SessionUse::threads, table);
 
 }  // namespace frond

@@ -1,4 +1,3 @@
-#include <numbers>
 
 #include "core/emission.h"
 #include "core/error.h"
@@ -12,8 +11,6 @@
 
 namespace frond {
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
 
 /// Point light whose intensity an image specifies by direction.
 class ImagePointLight : public Light, public EmissionSampler {

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include "core/emission.h"
 #include "core/error.h"
@@ -12,8 +11,6 @@
 
 namespace frond {
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
 
 /// Returns the direction of a light with "from" and "to", with the transform that pbrt composes.
 Vec3 direction_of(const Params& p, const Transform& world_from_light) {

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "core/error.h"
 #include "core/light.h"
 #include "core/math/direction_map.h"
@@ -16,8 +14,6 @@
 
 namespace frond {
 namespace {
-
-constexpr double kPiD = std::numbers::pi, kRadians = kPiD / 180;
 
 /// The disc of the sun, of uniform radiance.
 class SunDisc {
@@ -131,7 +127,7 @@ class SkyLight final : public EnvironmentLight {
   template <class Weight>
   static std::vector<float> cells(const SkyModel& model, const Weight& weight) {
     constexpr int kPoints = 3;  // for each cell, along each side
-    const double zenith = model.sun_zenith_deg() * kRadians;
+    const double zenith = model.sun_zenith_deg() * kDegree;
     const Vec3 sun = to_float(Vec3d{std::sin(zenith), 0, std::cos(zenith)});
     std::vector<float> sums(size_t(HemisphereTable::kSide * HemisphereTable::kSide));
     for (size_t cell = 0; cell < sums.size(); ++cell)

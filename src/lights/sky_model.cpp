@@ -1,7 +1,6 @@
 #include "lights/sky_model.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/error.h"
 #include "lights/station.h"
@@ -9,15 +8,14 @@
 namespace frond {
 namespace {
 
-constexpr double kPiD = std::numbers::pi, kRadians = kPiD / 180;
-constexpr double kSunRadius = 0.2666 * kRadians;  ///< at the mean distance
+constexpr double kSunRadius = 0.2666 * kDegree;  ///< at the mean distance
 constexpr double kOvercastTransmission = 0.25;  ///< Kasten and Czeplak 1980, cloud cover 8/8: of the clear sky's global
 constexpr int kCieOvercast = 1;                 ///< CIE standard overcast sky
 
 /// Returns the direction toward the sun. Throws InputError if "sundirection" is 0 or is given besides the angles.
 Vec3d toward_sun(const Params& p) {
   if (!p.given("sundirection")) {
-    const double elevation = p.real("elevation") * kRadians, azimuth = p.real("azimuth") * kRadians;
+    const double elevation = p.real("elevation") * kDegree, azimuth = p.real("azimuth") * kDegree;
     return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
   }
   for (const char* angle : {"elevation", "azimuth"})
@@ -86,11 +84,11 @@ double SkyModel::horizon_factor() const {
   return t / mean;
 }
 
-double SkyModel::sun_zenith_deg() const { return std::acos(std::clamp(toward_sun.z, -1.0, 1.0)) / kRadians; }
+double SkyModel::sun_zenith_deg() const { return std::acos(std::clamp(toward_sun.z, -1.0, 1.0)) / kDegree; }
 
 ShapeIntegrals::ShapeIntegrals(const SkyShape& shape, double sun_zenith_deg) {
   constexpr int kRings = 512, kSectors = 512;
-  const Vec3d sun{std::sin(sun_zenith_deg * kRadians), 0, std::cos(sun_zenith_deg * kRadians)};
+  const Vec3d sun{std::sin(sun_zenith_deg * kDegree), 0, std::cos(sun_zenith_deg * kDegree)};
   for (int i = 0; i < kRings; ++i) {
     // Midpoints of cos^2, which is uniform for directions with the density of the cosine.
     const double z = std::sqrt((i + 0.5) / kRings), r = std::sqrt(1 - z * z);

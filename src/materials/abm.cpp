@@ -11,7 +11,7 @@ namespace {
 using leaf::Tissue;
 
 constexpr std::string_view kModes[] = {"analog", "weighted"};
-constexpr Param kOwn[] = {
+constexpr Param kOwnAbmParams[] = {
     {.name = "mode",
      .kind = ParamKind::string,
      .default_value = std::string_view("analog"),
@@ -19,10 +19,9 @@ constexpr Param kOwn[] = {
      .choices = kModes},
 };
 // Without incident "reciprocal": a random walk cannot be symmetrised. leaf_solved can.
-const std::vector<Param> kAbm = without_reciprocal(with_leaf_params(kOwn));
+const std::vector<Param> kAbm = without_reciprocal(with_leaf_params(kOwnAbmParams));
 
 // Walks run in double: cosines of grazing rays are small.
-Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }
 Vec3 in_float(const Vec3d& w) { return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}; }
 
 /// A leaf at a hit, at the wavelengths of the path: a tissue for each active lane.
@@ -85,7 +84,7 @@ class AbmBsdf : public Bsdf {
   SampledSpectrum leaf_f(const Vec3& incident, const Vec3& leaving, RandomStream& rng) const {
     SampledSpectrum f;
     if (incident.z == 0 || std::abs(leaving.z) < kLeastCosine || lanes_.count == 0) return f;
-    const Vec3d from = in_double(incident), to = in_double(leaving);
+    const Vec3d from = normalize(to_double(incident)), to = normalize(to_double(leaving));
     const auto body = leaf::estimate_subsurface_f(lanes_.all(), lanes_.draw_hero(rng), from, to, absorption_, rng);
     for (size_t i = 0; i < lanes_.count; ++i)
       f[lanes_.lane[i]] = static_cast<float>(leaf::surface_f(*lanes_.tissues[i], from, to) + body[i]);
@@ -106,7 +105,7 @@ class AbmBsdf : public Bsdf {
     std::array<leaf::BatchRay, 256> batch;
     while (!rays.empty()) {
       const auto part = std::span(batch).first(std::min(batch.size(), rays.size()));
-      leaf::walk_batch(tissue(), in_double(incident), absorption_, rng.bits(), part);
+      leaf::walk_batch(tissue(), normalize(to_double(incident)), absorption_, rng.bits(), part);
       for (size_t i = 0; i < part.size(); ++i) {
         rays[i] = {part[i].wi, lobes_of(part[i].fate), {}};
         rays[i].weight[lanes_.lane[0]] = part[i].weight;
@@ -121,7 +120,7 @@ class AbmBsdf : public Bsdf {
     const float place = uc * static_cast<float>(lanes_.count);
     const size_t hero = std::min(static_cast<size_t>(place), lanes_.count - 1);
     const Vec2 disk = sample_disk(u);
-    const leaf::SpectralWalkEnd end = leaf::walk(lanes_.all(), hero, in_double(incident), absorption_,
+    const leaf::SpectralWalkEnd end = leaf::walk(lanes_.all(), hero, normalize(to_double(incident)), absorption_,
                                                  {place - static_cast<float>(hero), disk.x, disk.y}, rng);
     Scattered ray{in_float(end.wi), lobes_of(end.fate), {}};
     if (std::abs(ray.direction.z) < kLeastCosine) return ray;

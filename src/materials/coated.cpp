@@ -111,16 +111,16 @@ class CoatedDiffuse final : public Material {
 // Names as in pbrt-v4: the coat is its "interface".
 constexpr RoughnessNames kCoatRoughness{"interface.roughness", "interface.uroughness", "interface.vroughness"};
 constexpr RoughnessNames kMetalRoughness{"conductor.roughness", "conductor.uroughness", "conductor.vroughness"};
-constexpr MetalNames kMetalNames{"conductor.eta", "conductor.k", "reflectance"};
+constexpr MetalNames kCoatedMetalNames{"conductor.eta", "conductor.k", "reflectance"};
 constexpr auto kCoatedConductor =
-    joined(std::array{coat_eta("interface.eta")}, roughness_params(kCoatRoughness), metal_params(kMetalNames),
+    joined(std::array{coat_eta("interface.eta")}, roughness_params(kCoatRoughness), metal_params(kCoatedMetalNames),
            roughness_params(kMetalRoughness), std::array{kRemapRoughness}, kCoatMedium);
 
 // Material "coatedconductor": a ConductorBase under a dielectric coat, each with its own roughness.
 class CoatedConductor final : public Material {
  public:
   explicit CoatedConductor(const Params& p)
-      : metal_(p, kMetalNames), roughness_(p, kMetalRoughness), coat_(p, "interface.eta", kCoatRoughness) {}
+      : metal_(p, kCoatedMetalNames), roughness_(p, kMetalRoughness), coat_(p, "interface.eta", kCoatRoughness) {}
 
   void prepare(const Preparation& preparation) override {
     metal_.prepare(preparation.wavelengths);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kAuto = "auto";
 
-constexpr Param kOwn[] = {
+constexpr Param kOwnLeafParams[] = {
     {.name = "model",
      .kind = ParamKind::string,
      .default_value = kAuto,
@@ -30,7 +30,7 @@ constexpr Param kOwn[] = {
      .range = {1e-6, 1},
      .doc = "The same error relative to each channel's mean over the image, such as 0.02."},
 };
-const std::vector<Param> kLeaf = with_leaf_params(kOwn);
+const std::vector<Param> kLeaf = with_leaf_params(kOwnLeafParams);
 
 /// Whether a texture gives the aspect ratio of an inner wall, for which no table holds.
 bool has_wall_textures(const Params& p) {

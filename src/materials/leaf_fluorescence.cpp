@@ -7,12 +7,6 @@
 #include "leaf/tissue/absorption.h"
 
 namespace frond {
-namespace {
-
-// Walks run in double: cosines of grazing rays are small.
-Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }
-
-}  // namespace
 
 LeafFluorescence::LeafFluorescence(const LeafParams& leaf)
     : tissue_(leaf.tissue()), model_(tissue_), emission_(leaf.emission()) {
@@ -33,13 +27,13 @@ double LeafFluorescence::f(const Vec3& wo, const Vec3& wi, double emission_nm, d
                            RandomStream& rng) const {
   const double scale = share(excitation_nm) * density(emission_nm, excitation_nm);
   if (scale == 0 || wo.z == 0 || wi.z == 0) return 0;
-  return scale * transfer(in_double(wo), in_double(wi), emission_nm, excitation_nm, rng);
+  return scale * transfer(normalize(to_double(wo)), normalize(to_double(wi)), emission_nm, excitation_nm, rng);
 }
 
 FluorescencePhotons LeafFluorescence::photons(const Vec3& wi, double emission_nm, double excitation_nm,
                                               RandomStream& rng) const {
   if (wi.z == 0) return {};
-  const leaf::FluorescenceEnd end = transferred(in_double(wi), emission_nm, excitation_nm, rng);
+  const leaf::FluorescenceEnd end = transferred(normalize(to_double(wi)), emission_nm, excitation_nm, rng);
   const double absorbed = share(excitation_nm), scale = absorbed * density(emission_nm, excitation_nm);
   return {absorbed * end.emitted, scale * end.emitted, scale * end.reabsorbed, scale * end.left[0],
           scale * end.left[1]};

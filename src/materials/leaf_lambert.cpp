@@ -16,7 +16,7 @@
 namespace frond {
 namespace {
 
-constexpr Param kOwn[] = {
+constexpr Param kOwnLeafLambertParams[] = {
     {.name = "incidence",
      .kind = ParamKind::real,
      .default_value = 8.0,
@@ -33,7 +33,7 @@ constexpr Param kOwn[] = {
     kTableFile,
     kTableLeaf,
 };
-const std::vector<Param> kLeafLambert = with_leaf_params(kOwn);
+const std::vector<Param> kLeafLambert = with_leaf_params(kOwnLeafLambertParams);
 
 /// An angle of incidence, and its weight in the mean of a side.
 struct Incidence {

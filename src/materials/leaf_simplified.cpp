@@ -14,7 +14,7 @@ namespace frond {
 namespace {
 
 constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
-constexpr Param kOwn[] = {
+constexpr Param kOwnLeafSimplifiedParams[] = {
     {.name = "oblateness",
      .kind = ParamKind::real,
      .range = {0, 1000},
@@ -49,7 +49,7 @@ constexpr Param kOwn[] = {
          "Share of light that the surface lobe reflects, at most R, where tablefile holds measured R and T. It moves "
          "light from the diffuse lobe to the surface lobe: R stays as measured."},
 };
-const std::vector<Param> kLeafSimplified = with_leaf_params(kOwn);
+const std::vector<Param> kLeafSimplified = with_leaf_params(kOwnLeafSimplifiedParams);
 
 // Parameters that have no effect with "tablefile".
 constexpr std::string_view kOfTable[] = {"tablemethod", "tablerays", "tablestep"};

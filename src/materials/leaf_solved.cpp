@@ -16,7 +16,7 @@
 namespace frond {
 namespace {
 
-constexpr Param kOwn[] = {
+constexpr Param kOwnLeafSolvedParams[] = {
     {.name = "tolerance",
      .kind = ParamKind::real,
      .default_value = 5e-4,
@@ -28,7 +28,7 @@ constexpr Param kOwn[] = {
      .doc = "File with the leaf's mode table, made by frond table leaf_solved (docs/file_formats.md); replaces all "
             "parameters of the tissue."},
 };
-const std::vector<Param> kLeafSolved = with_leaf_params(kOwn);
+const std::vector<Param> kLeafSolved = with_leaf_params(kOwnLeafSolvedParams);
 
 /// Leaf by the solved walk of `abm`: the same BSDF without noise.
 class LeafSolved final : public Material, public FluorescentMaterial {

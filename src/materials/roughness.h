@@ -71,8 +71,8 @@ class Roughness {
 template <size_t... N>
 constexpr auto joined(const std::array<Param, N>&... parts) {
   std::array<Param, (N + ...)> all{};
-  size_t i = 0;
-  ((std::ranges::for_each(parts, [&](const Param& p) { all[i++] = p; })), ...);
+  auto end = all.begin();
+  ((end = std::ranges::copy(parts, end).out), ...);
   return all;
 }
 

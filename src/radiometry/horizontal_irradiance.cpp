@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/emission.h"
 #include "core/error.h"
 #include "core/fluorescence.h"
+#include "core/math/vec.h"
 #include "core/stop.h"
 #include "spectra/tabulated.h"
 #include "spectra/wavelengths/band_label.h"
@@ -162,8 +162,7 @@ bool is_direct(const Light& light, const Vec3& toward) {
   const auto sun = light.sun();
   if (!sun) return false;
   const Vec3 apart = toward - *sun;
-  constexpr double kRadian = std::numbers::pi / 180;
-  const double chord = 2 * std::sin(kSunAngle_deg * kRadian / 2);
+  const double chord = 2 * std::sin(kSunAngle_deg * kDegree / 2);
   return double(dot(apart, apart)) < chord * chord;
 }
 

@@ -15,8 +15,6 @@
 namespace frond {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 Vec3d direction_of(double zenith_deg, double azimuth_deg) {
   const double theta = zenith_deg * kDegree, phi = azimuth_deg * kDegree;
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};

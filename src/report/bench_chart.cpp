@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr size_t kMostAngles = 6, kMostMaterials = 12;
+constexpr size_t kMostMarks = 6, kMostRows = 12;
 constexpr const char* kColor = "#0072b2";
 
 /// Returns a time with the unit that keeps it short.
@@ -62,10 +62,9 @@ double us_to_percent(const Worth& worth, double variance, const Estimate& time_n
 }
 
 void check_bench_chart(size_t materials, size_t angles) {
-  if (materials > kMostMaterials)
-    fail({}, "--plot: {} materials are more than the {} rows of a chart", materials, kMostMaterials);
-  if (angles > kMostAngles)
-    fail({}, "--plot: {} angles are more than the {} distinguishable marks", angles, kMostAngles);
+  if (materials > kMostRows)
+    fail({}, "--plot: {} materials are more than the {} rows of a chart", materials, kMostRows);
+  if (angles > kMostMarks) fail({}, "--plot: {} angles are more than the {} distinguishable marks", angles, kMostMarks);
 }
 
 Chart bench_chart(const std::vector<BenchMeasurement>& measurements) {

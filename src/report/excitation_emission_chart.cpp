@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr size_t kMostMatrices = 6, kMostCells = 100'000;
+constexpr size_t kMostMatrices = 6, kMostPairs = 100'000;
 
 /// Interval of an axis that a wavelength stands for: up to the middles between it and its neighbours.
 Range around(const std::vector<double>& nm, size_t i) {
@@ -49,8 +49,8 @@ void check_excitation_emission_chart(size_t matrices, size_t excitations, size_t
     fail({}, "--plot draws a map over excitation and emission: at least two wavelengths of each are needed");
   if (matrices > kMostMatrices)
     fail({}, "--plot draws {} matrices at most, {} were given (materials times angles)", kMostMatrices, matrices);
-  if (excitations * emissions > kMostCells)
-    fail({}, "--plot draws {} pairs of wavelengths at most, there are {} x {}", kMostCells, excitations, emissions);
+  if (excitations * emissions > kMostPairs)
+    fail({}, "--plot draws {} pairs of wavelengths at most, there are {} x {}", kMostPairs, excitations, emissions);
 }
 
 Chart excitation_emission_chart(const std::vector<LabelledMatrix>& matrices) {

@@ -9,8 +9,8 @@
 namespace frond {
 namespace {
 
-constexpr size_t kMostMeasurements = 12;
-constexpr size_t kMostCells = 100'000;
+constexpr size_t kMostMaps = 12;
+constexpr size_t kMostPatches = 100'000;
 
 /// Returns the scale of all values above 0. A logarithmic scale spans at least a decade, so that it has a labelled
 /// tick.
@@ -44,11 +44,11 @@ void add_patches(const PolarMap& map, const ColorScale& scale, const Goniophotom
 
 void check_map_chart(const MeasurementCounts& c, const DetectorSphere& sphere) {
   const size_t measurements = c.materials * c.angles * c.wavelengths;
-  if (measurements > kMostMeasurements)
-    fail({}, "--map draws {} measurements at most, {} were given ({} materials, {} angles, {} wavelengths)",
-         kMostMeasurements, measurements, c.materials, c.angles, c.wavelengths);
-  if (sphere.size() > kMostCells)
-    fail({}, "--map draws {} patches at most, there are {} x {}", kMostCells, sphere.thetas(), sphere.phis());
+  if (measurements > kMostMaps)
+    fail({}, "--map draws {} measurements at most, {} were given ({} materials, {} angles, {} wavelengths)", kMostMaps,
+         measurements, c.materials, c.angles, c.wavelengths);
+  if (sphere.size() > kMostPatches)
+    fail({}, "--map draws {} patches at most, there are {} x {}", kMostPatches, sphere.thetas(), sphere.phis());
 }
 
 Chart map_chart(const std::vector<LabelledPatches>& measurements, bool logarithmic) {

@@ -7,7 +7,7 @@ namespace frond {
 namespace {
 
 constexpr size_t kMostAngles = 6, kMostMaterials = 4;
-constexpr std::array kMarks{Mark::disk, Mark::ring, Mark::square, Mark::open_square};  // by material
+constexpr std::array kMaterialMarks{Mark::disk, Mark::ring, Mark::square, Mark::open_square};  // by material
 
 /// Returns f of the patches in the plane of incidence, with standard errors. The angle is from the normal of that side,
 /// negative on the light's side.
@@ -67,7 +67,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
   const auto series = [&](const LabelledPatches& r, const std::string& label, const std::string& color) -> Series {
     const size_t m = index_of(materials, r.material);
     const bool exact = r.measurement.is_integrated();
-    return {label, color, exact || !some_integrated ? 1.5 : 0, Dash(m), exact ? Mark::none : kMarks[m], 2.5};
+    return {label, color, exact || !some_integrated ? 1.5 : 0, Dash(m), exact ? Mark::none : kMaterialMarks[m], 2.5};
   };
   Chart chart{angles.size()};
   for (const bool reflected : {true, false})

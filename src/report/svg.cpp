@@ -18,7 +18,7 @@ constexpr const char *kDisk = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0z", *kSquare = "
                      *kDown = "M-1.2-.8L0 1.3 1.2-.8z", *kPentagon = "M0-1.2L1.14-.37.7.97-.7.97-1.14-.37z",
                      *kCross = "M-1-1L1 1M-1 1L1-1", *kStar = "M-1 0H1M-.5-.87L.5.87M-.5.87L.5-.87",
                      *kBar = "M0-1.8V1.8";
-constexpr std::array kMarks{kDisk, kSquare, kUp, kDiamond, kDown, kPentagon, kDisk, kSquare, kCross, kStar, kBar};
+constexpr std::array kMarkPaths{kDisk, kSquare, kUp, kDiamond, kDown, kPentagon, kDisk, kSquare, kCross, kStar, kBar};
 
 /// Returns a decimal number for common magnitudes, otherwise a power of ten, as in 2×10⁻⁷.
 std::string tick_text(double value) {
@@ -90,7 +90,7 @@ std::string mark_at(double x, double y, const Series& s) {
   const std::string fill = s.mark == Mark::ring || s.mark == Mark::open_square ? "#fff" : s.color,
                     position = fmt::format("translate({:.2f} {:.2f}) scale({})", x, y, s.mark_size);
   return fmt::format("<path transform='{}' d='{}' fill='{}' stroke='{}' stroke-width='{:.3f}'/>\n", position,
-                     kMarks[size_t(s.mark)], fill, s.color, width);
+                     kMarkPaths[size_t(s.mark)], fill, s.color, width);
 }
 
 /// Returns the axis with a range: its own, or the range of the points.

@@ -6,16 +6,16 @@
 namespace frond {
 namespace {
 
-constexpr int kFirst_nm = 360, kStep_nm = 5;
+constexpr int kFirstRow_nm = 360, kRowStep_nm = 5;
 
 /// Row of the table: colour matching functions and the spectrum of D65.
-struct Row {
+struct CieRow {
   double xbar, ybar, zbar, d65;
 };
 
 // From 360 nm in steps of 5 nm to 830 nm. Colour matching functions: CIE 1931 standard colorimetric observer, 2
 // degrees; D65: CIE standard illuminant D65, both as tabulated in CIE 15:2004, Colorimetry, 3rd edition.
-constexpr Row kTable[] = {
+constexpr CieRow kCieTable[] = {
     {0.0001299, 3.917e-06, 0.0006061, 46.6383},
     {0.0002321, 6.965e-06, 0.001086, 49.3637},
     {0.0004149, 1.239e-05, 0.001946, 52.0891},
@@ -112,12 +112,12 @@ constexpr Row kTable[] = {
     {1.776509e-06, 6.4153e-07, 0, 58.8765},
     {1.251141e-06, 4.5181e-07, 0, 60.3125},
 };
-static_assert(std::size(kTable) == 95);
+static_assert(std::size(kCieTable) == 95);
 
 SpectrumPtr make_d65() {
   std::vector<SpectrumPoint> points;
-  for (size_t i = 0; i < std::size(kTable); ++i)
-    points.push_back({double(kFirst_nm + kStep_nm * static_cast<int>(i)), kTable[i].d65});
+  for (size_t i = 0; i < std::size(kCieTable); ++i)
+    points.push_back({double(kFirstRow_nm + kRowStep_nm * static_cast<int>(i)), kCieTable[i].d65});
   return make_tabulated(points);
 }
 
@@ -125,10 +125,10 @@ SpectrumPtr make_d65() {
 
 Triple cie_xyz(double lambda_nm) {
   if (!kCieRange_nm.contains(lambda_nm)) return {};
-  const double x = (lambda_nm - kFirst_nm) / kStep_nm;
-  const size_t i = std::min(static_cast<size_t>(x), std::size(kTable) - 2);
+  const double x = (lambda_nm - kFirstRow_nm) / kRowStep_nm;
+  const size_t i = std::min(static_cast<size_t>(x), std::size(kCieTable) - 2);
   const double t = x - static_cast<double>(i);
-  const Row &a = kTable[i], &b = kTable[i + 1];
+  const CieRow &a = kCieTable[i], &b = kCieTable[i + 1];
   return {a.xbar + t * (b.xbar - a.xbar), a.ybar + t * (b.ybar - a.ybar), a.zbar + t * (b.zbar - a.zbar)};
 }
 

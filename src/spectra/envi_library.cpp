@@ -15,15 +15,10 @@
 #include "core/units/number.h"
 #include "system/file_bytes.h"
 #include "system/lower_case.h"
+#include "system/trimmed.h"
 
 namespace frond {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
-}
 
 /// A header: lines "key = value"; values in braces are lists, over any number of lines.
 class Header {

@@ -28,10 +28,7 @@ bool is_missing(std::string_view text) {
   return lower.empty() || lower == "nan" || lower == "na";
 }
 
-double number_of(const TextTable& table, size_t field) {
-  if (const auto value = table.number(table.fields()[field].text)) return *value;
-  fail(table.where(field), "a response is a number at each wavelength (nm): this is not a number");
-}
+constexpr std::string_view kResponseLine = "a response is a number at each wavelength (nm)";
 
 /// Sorts the points, makes noise about 0 zero, and removes zeros at both ends, which may be at any wavelengths.
 void tidy(BandResponse& band) {
@@ -73,7 +70,7 @@ std::vector<BandResponse> bands_of(TextTable& table) {
          "of bands, wavelengths and responses");
   while (table.next()) {
     table.check_fields();
-    const double nm = to_nm * number_of(table, wavelength);
+    const double nm = to_nm * table.number(wavelength, kResponseLine);
     if (!std::isfinite(nm)) fail(table.where(wavelength), "{} is not a wavelength in nm", nm);
     size_t band = 0;
     if (label != names.end()) {
@@ -84,7 +81,7 @@ std::vector<BandResponse> bands_of(TextTable& table) {
     for (const size_t column : columns) {
       BandResponse& to = bands[band++];
       if (!is_missing(table.fields()[column].text))
-        to.points.push_back({nm, number_of(table, column), table.where(column)});
+        to.points.push_back({nm, table.number(column, kResponseLine), table.where(column)});
     }
   }
   return bands;

@@ -10,7 +10,7 @@
 namespace frond {
 namespace {
 
-constexpr float kFirst_nm = 400, kStep_nm = 10;  // of soil.csv
+constexpr float kSoilFirst_nm = 400, kSoilStep_nm = 10;  // of soil.csv
 
 // BSM's constants.
 constexpr double kSoilIndex = 2;       // refractive index of the soil's grains
@@ -84,7 +84,7 @@ void Soil::prepare(const std::vector<double>& dry) {
 }
 
 float Soil::reflectance(float lambda_nm, float moisture) const {
-  const float x = std::clamp((lambda_nm - kFirst_nm) / kStep_nm, 0.f, float(optics_.size() - 1));
+  const float x = std::clamp((lambda_nm - kSoilFirst_nm) / kSoilStep_nm, 0.f, float(optics_.size() - 1));
   const size_t i = std::min(size_t(x), optics_.size() - 2);
   const float t = x - float(i);
   const Optics &a = optics_[i], &b = optics_[i + 1];

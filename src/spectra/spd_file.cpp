@@ -15,11 +15,7 @@
 namespace frond {
 namespace {
 
-/// The message does not quote the file: a scene could name any file here, and its content would appear in the log.
-double number_of(const TextTable& table, size_t field) {
-  if (const auto value = table.number(table.fields()[field].text)) return *value;
-  fail(table.where(field), "a spectrum file has a wavelength (nm) and a value in each line: this is not a number");
-}
+constexpr std::string_view kSpectrumLine = "a spectrum file has a wavelength (nm) and a value in each line";
 
 /// Reads alternating wavelengths and values, in lines of any length.
 std::vector<SpectrumPoint> read_pairs(TextTable& table) {
@@ -34,7 +30,7 @@ std::vector<SpectrumPoint> read_pairs(TextTable& table) {
            table.fields().size());
     is_odd = is_odd && table.fields().size() % 2 == 1 && table.fields().size() == table.columns();
     for (size_t i = 0; i < table.fields().size(); ++i, has_value = !has_value) {
-      const double value = number_of(table, i);
+      const double value = table.number(i, kSpectrumLine);
       if (has_value) points.push_back({value, 0, table.where(i)});
       points.back().value = value;
     }
@@ -86,10 +82,10 @@ class NamedColumns {
     std::vector<SpectrumPoint> points;
     while (table_.next()) {
       table_.check_fields();
-      points.push_back({number_of(table_, wavelength_), 0, table_.where(wavelength_)});
+      points.push_back({table_.number(wavelength_, kSpectrumLine), 0, table_.where(wavelength_)});
       for (size_t c = 0; c < values_.size(); ++c)
         if (values_.size() == 1 || is_wanted(c, wanted) || (wanted.empty() && is_share(c)))
-          values[c].push_back(number_of(table_, values_[c]));
+          values[c].push_back(table_.number(values_[c], kSpectrumLine));
     }
     for (SpectrumPoint& p : points) p.lambda_nm *= is_in_micrometres(table_.names()[wavelength_].text) ? 1000 : 1;
     if (points.empty()) fail(table_.names_where(), "the file holds no spectrum: no line of numbers follows this one");

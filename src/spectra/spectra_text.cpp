@@ -9,17 +9,10 @@
 
 #include "spectra/envi_library.h"
 #include "system/lower_case.h"
+#include "system/trimmed.h"
 
 namespace frond {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
 
 /// Lines without their ends.
 std::vector<std::string_view> lines_of(std::string_view text) {

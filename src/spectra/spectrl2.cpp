@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/math/vec.h"
 #include "spectra/csv_columns.h"
 #include "spectra/data_files.h"
 
 namespace frond {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
 
 /// Transmittances of the atmosphere at one wavelength along one air mass.
 struct Transmittances {
@@ -31,7 +30,7 @@ Transmittances transmittances(const Atmosphere& a, const Air& air, double relati
   constexpr double kStandardPressure_Pa = 101300, kOzoneHeight = 22.0 / 6370;
   const double mass = relative_mass * a.pressure_Pa / kStandardPressure_Pa, um2 = air.um * air.um;
   const double water = air.water_per_cm * a.water_cm * relative_mass, gases = air.gases * mass;
-  const double cos_zenith = std::cos(a.sun_zenith_deg * kRadians);
+  const double cos_zenith = std::cos(a.sun_zenith_deg * kDegree);
   const double ozone_mass = (1 + kOzoneHeight) / std::sqrt(cos_zenith * cos_zenith + 2 * kOzoneHeight);  // 2-10
   const double depth = air.aerosol_depth * relative_mass, albedo = air.aerosol_scattering_albedo;
   return {.rayleigh = std::exp(-mass / (um2 * um2 * (115.6406 - 1.3366 / um2))),       // 2-4
@@ -66,14 +65,14 @@ double sun_distance_factor(int day) {
 }
 
 double relative_air_mass(double sun_zenith_deg) {
-  return 1 / (std::cos(sun_zenith_deg * kRadians) + 0.50572 * std::pow(96.07995 - sun_zenith_deg, -1.6364));
+  return 1 / (std::cos(sun_zenith_deg * kDegree) + 0.50572 * std::pow(96.07995 - sun_zenith_deg, -1.6364));
 }
 
 ClearSkyIrradiance spectrl2(const Atmosphere& a) {
   constexpr double kScatteringAlbedo = 0.945, kScatteringSlope = 0.095;  // rural aerosol, at 400 nm
   constexpr double kDiffuseMass = 1.8;                                   // air mass of diffuse light
   const auto table = csv_columns(spectrl2_csv);  // nm, extraterrestrial, water vapour, ozone, mixed gases
-  const double cos_zenith = std::max(0.0, std::cos(a.sun_zenith_deg * kRadians));
+  const double cos_zenith = std::max(0.0, std::cos(a.sun_zenith_deg * kDegree));
   const double relative_mass = relative_air_mass(a.sun_zenith_deg), distance = sun_distance_factor(a.day);
   const DownwardShares down = downward_shares(cos_zenith);
   ClearSkyIrradiance result{.nm = table[0], .extraterrestrial = {}, .direct_normal = {}, .diffuse = {}};

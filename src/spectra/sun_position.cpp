@@ -3,13 +3,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <string>
+
+#include "core/math/vec.h"
 
 namespace frond {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kDay = 86400;  // s
 
 /// Reads digits from the front of a text; nullopt if there are fewer than `count`.
@@ -96,22 +96,22 @@ std::optional<CivilTime> parse_time(std::string_view text) {
 }
 
 SunPosition sun_position(double days, double latitude, double longitude) {
-  const double mean_longitude = 280.460 + 0.9856474 * days, anomaly = (357.528 + 0.9856003 * days) * kRadians;
-  const double ecliptic = (mean_longitude + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * kRadians;
-  const double obliquity = (23.439 - 0.0000004 * days) * kRadians;
+  const double mean_longitude = 280.460 + 0.9856474 * days, anomaly = (357.528 + 0.9856003 * days) * kDegree;
+  const double ecliptic = (mean_longitude + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * kDegree;
+  const double obliquity = (23.439 - 0.0000004 * days) * kDegree;
   const double ascension = std::atan2(std::cos(obliquity) * std::sin(ecliptic), std::cos(ecliptic));
   const double declination = std::asin(std::sin(obliquity) * std::sin(ecliptic));
   // Mean sidereal time; a day of 24 h UTC is 24.0657098242 h of it.
   const double sidereal_hours = 18.697374558 + 24.06570982441908 * days;
-  const double hour_angle = (15 * std::fmod(sidereal_hours, 24.0) + longitude) * kRadians - ascension;
-  const double phi = latitude * kRadians;
+  const double hour_angle = (15 * std::fmod(sidereal_hours, 24.0) + longitude) * kDegree - ascension;
+  const double phi = latitude * kDegree;
   const double sine =
       std::sin(declination) * std::sin(phi) + std::cos(declination) * std::cos(phi) * std::cos(hour_angle);
   const double azimuth =
       std::atan2(-std::cos(declination) * std::sin(hour_angle),
                  std::sin(declination) * std::cos(phi) - std::cos(declination) * std::sin(phi) * std::cos(hour_angle)) /
-      kRadians;
-  return {refracted(std::asin(std::min(1.0, std::max(-1.0, sine))) / kRadians), azimuth < 0 ? azimuth + 360 : azimuth};
+      kDegree;
+  return {refracted(std::asin(std::min(1.0, std::max(-1.0, sine))) / kDegree), azimuth < 0 ? azimuth + 360 : azimuth};
 }
 
 }  // namespace frond

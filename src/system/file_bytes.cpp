@@ -21,7 +21,7 @@ struct CloseFile {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
 /// File to read, and its description in messages.
-struct Source {
+struct NamedFile {
   std::string path;
   const Location& where;
   std::string_view what;
@@ -40,7 +40,7 @@ struct Source {
 };
 
 /// Throws for devices, which may be endless, and for folders, which can be opened but not read.
-void check_kind(const Source& source) {
+void check_kind(const NamedFile& source) {
   std::error_code error;
   const fs::file_type type = fs::status(source.path, error).type();
   if (type == fs::file_type::not_found) source.reject(std::strerror(ENOENT), "there is no file " + source.shown());
@@ -50,7 +50,7 @@ void check_kind(const Source& source) {
     source.reject("it is no regular file", source.shown() + " is not a regular file");
 }
 
-File open(const Source& source) {
+File open_file(const NamedFile& source) {
   check_kind(source);
   File file(std::fopen(source.path.c_str(), "rb"));
   if (!file) source.reject("open", errno);
@@ -58,7 +58,7 @@ File open(const Source& source) {
   return file;
 }
 
-void append_rest(std::FILE* file, const Source& source, std::string& bytes) {
+void append_rest(std::FILE* file, const NamedFile& source, std::string& bytes) {
   std::array<char, 1 << 16> block;
   while (const size_t count = std::fread(block.data(), 1, block.size(), file)) {
     check_stop();
@@ -70,8 +70,8 @@ void append_rest(std::FILE* file, const Source& source, std::string& bytes) {
 }  // namespace
 
 std::string read_file_bytes(const fs::path& path, const Location& where, std::string_view what) {
-  const Source source{path.string(), where, what};
-  const File file = open(source);
+  const NamedFile source{path.string(), where, what};
+  const File file = open_file(source);
   std::string bytes;
   std::error_code unknown_size;  // a pipe has none
   if (const auto size = fs::file_size(path, unknown_size); !unknown_size) bytes.reserve(size);
@@ -88,8 +88,8 @@ std::string read_standard_input() {
 uint64_t read_file_blocks(const fs::path& path, const Location& where,
                           const std::function<void(std::string_view)>& use) {
   constexpr size_t kBlock = 1 << 20;
-  const Source source{path.string(), where, {}};
-  const File file = open(source);
+  const NamedFile source{path.string(), where, {}};
+  const File file = open_file(source);
   std::string block(kBlock, '\0');
   uint64_t all = 0;
   while (const size_t count = std::fread(block.data(), 1, kBlock, file.get())) {

@@ -11,7 +11,7 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kMagic = "\x1f\x8b";
+constexpr std::string_view kGzipMagic = "\x1f\x8b";
 constexpr size_t kBlock = size_t{1} << 18;
 
 /// Decompressor of zlib, which is ended by the destructor.
@@ -32,7 +32,7 @@ class Inflater {
 
 }  // namespace
 
-bool is_gzip(std::string_view bytes) { return bytes.starts_with(kMagic); }
+bool is_gzip(std::string_view bytes) { return bytes.starts_with(kGzipMagic); }
 
 std::string unpack_gzip(std::string_view bytes, const std::string& name, const Location& where, size_t most) {
   if (most == 0) most = most_unpacked(bytes.size());

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as they are in the file");
 
-constexpr std::string_view kMagic("tensor_file\0", 12);
+constexpr std::string_view kTensorFileMagic("tensor_file\0", 12);
 /// Bytes of a number of each type: none, integers of 8 to 64 bits with and without sign, floats of 16 to 64 bits.
 constexpr std::array<uint8_t, 12> kBytes{0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 
@@ -43,12 +43,12 @@ class Reader {
 
 }  // namespace
 
-bool is_tensor_file(std::string_view bytes) { return bytes.starts_with(kMagic); }
+bool is_tensor_file(std::string_view bytes) { return bytes.starts_with(kTensorFileMagic); }
 
 TensorFile::TensorFile(std::string bytes, std::string name, Location where)
     : bytes_(std::move(bytes)), name_(std::move(name)), where_(std::move(where)) {
   if (!is_tensor_file(bytes_)) reject("it is not a tensor file");
-  Reader reader(std::string_view(bytes_).substr(kMagic.size()));
+  Reader reader(std::string_view(bytes_).substr(kTensorFileMagic.size()));
   std::array<uint8_t, 2> version{};
   uint32_t fields = 0;
   const auto need = [this](bool complete) {
@@ -112,9 +112,9 @@ std::vector<float> TensorFile::numbers(const Field& field, float least) const {
 }
 
 std::string tensor_file_of(std::span<const TensorFile::Field> fields) {
-  std::string file(kMagic), arrays;
+  std::string file(kTensorFileMagic), arrays;
   const auto put = [&file](const auto& number) { file.append(reinterpret_cast<const char*>(&number), sizeof number); };
-  size_t start = kMagic.size() + sizeof(uint16_t) + sizeof(uint32_t);
+  size_t start = kTensorFileMagic.size() + sizeof(uint16_t) + sizeof(uint32_t);
   for (const TensorFile::Field& f : fields)
     start += 2 * sizeof(uint16_t) + f.name.size() + sizeof f.type + sizeof(uint64_t) * (1 + f.shape.size());
   put(std::array<uint8_t, 2>{1, 0});

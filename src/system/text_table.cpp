@@ -4,16 +4,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "system/trimmed.h"
+
 namespace frond {
 namespace {
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// Returns the index after the quoted text that begins at `begin`, in which "" stands for a quote; `begin` if there is
 /// none or it is not closed.
@@ -236,6 +232,11 @@ void TextTable::check_fields() const {
 
 std::optional<double> TextTable::number(std::string_view text) const {
   return separator_ != ',' && text.find(',') != text.npos ? parsed_with_comma(text) : parsed(text);
+}
+
+double TextTable::number(size_t field, std::string_view holds) const {
+  if (const auto value = number(fields_[field].text)) return *value;
+  fail(where(field), "{}: this is not a number", holds);
 }
 
 }  // namespace frond

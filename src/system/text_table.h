@@ -56,6 +56,9 @@ class TextTable {
   void check_fields() const;
   /// The number that a field of this table is; nullopt if it is none. It may be infinite or not a number.
   std::optional<double> number(std::string_view text) const;
+  /// The number in a field of the row. Otherwise throws InputError with what the table holds, `holds`; the message does
+  /// not quote the field: a scene could name any file, and its content would appear in the log.
+  double number(size_t field, std::string_view holds) const;
 
   /// Location of the row, or of a field of it.
   Location where() const { return {file_, line_, fields_.empty() ? 1 : fields_[0].column}; }

@@ -315,21 +315,16 @@ constexpr Param kImageMap[] = {
 /// Parameters of both textures: those of the image and of the mapping.
 constexpr auto kImageParams = with_mapping(kImageMap);
 
-template <class Base, class T>
-std::unique_ptr<Base> make(const Params& p, const TexturePlacement& placement) {
-  return std::make_unique<T>(p, placement);
-}
-
 }  // namespace
 
 extern const FloatTextureInfo image_float_texture{{"float texture", "imagemap",
                                                    "Image: its alpha, or without alpha the mean of its channels; "
                                                    "with filter point, or ewa without alpha, the first channel.",
                                                    "pbrt-v4", kImageParams},
-                                                  make<FloatTexture, ImageFloat>};
+                                                  make_placed<FloatTexture, ImageFloat>};
 extern const SpectrumTextureInfo image_spectrum_texture{
     {"spectrum texture", "imagemap", "Image: its colours as smooth reflectance spectra.", "Jakob and Hanika 2019",
      kImageParams},
-    make<SpectrumTexture, ImageSpectrum>};
+    make_placed<SpectrumTexture, ImageSpectrum>};
 
 }  // namespace frond

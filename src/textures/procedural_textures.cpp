@@ -333,11 +333,6 @@ class Marble final : public SpectrumTexture {
   const ReflectanceTable& table_;
 };
 
-template <class Base, class T>
-std::unique_ptr<Base> make(const Params& p, const TexturePlacement& placement) {
-  return std::make_unique<T>(p, placement);
-}
-
 // ---- Parameters ----
 
 constexpr Param texture_param(std::string_view name, ParamKind kind, double value, std::string_view doc) {
@@ -409,41 +404,42 @@ constexpr Param kMarble[] = {
 extern const FloatTextureInfo checkerboard_float_texture{
     {"float texture", "checkerboard", "Checkerboard of two textures, filtered over the footprint.", "pbrt-v4",
      kCheckerFloatParams},
-    make<FloatTexture, SharedFloat<Checkerboard>>};
+    make_placed<FloatTexture, SharedFloat<Checkerboard>>};
 extern const SpectrumTextureInfo checkerboard_spectrum_texture{
     {"spectrum texture", "checkerboard", "Checkerboard of two textures, filtered over the footprint.", "pbrt-v4",
      kCheckerSpectrumParams},
-    make<SpectrumTexture, SharedSpectrum<Checkerboard>>};
+    make_placed<SpectrumTexture, SharedSpectrum<Checkerboard>>};
 extern const FloatTextureInfo dots_float_texture{
     {"float texture", "dots", "Dots at random places.", "pbrt-v4", kDotsFloatParams},
-    make<FloatTexture, SharedFloat<Dots>>};
+    make_placed<FloatTexture, SharedFloat<Dots>>};
 extern const SpectrumTextureInfo dots_spectrum_texture{
     {"spectrum texture", "dots", "Dots at random places.", "pbrt-v4", kDotsSpectrumParams},
-    make<SpectrumTexture, SharedSpectrum<Dots>>};
+    make_placed<SpectrumTexture, SharedSpectrum<Dots>>};
 extern const FloatTextureInfo direction_mix_float_texture{
     {"float texture", "directionmix", "Mixture of two textures by the shading normal.", "pbrt-v4", kDirectionFloat},
-    make<FloatTexture, SharedFloat<DirectionMix>>};
+    make_placed<FloatTexture, SharedFloat<DirectionMix>>};
 extern const SpectrumTextureInfo direction_mix_spectrum_texture{
     {"spectrum texture", "directionmix", "Mixture of two textures by the shading normal.", "pbrt-v4",
      kDirectionSpectrum},
-    make<SpectrumTexture, SharedSpectrum<DirectionMix>>};
+    make_placed<SpectrumTexture, SharedSpectrum<DirectionMix>>};
 extern const FloatTextureInfo bilerp_float_texture{
     {"float texture", "bilerp", "Bilinear interpolation of four numbers at the corners.", "pbrt-v4",
      kBilerpFloatParams},
-    make<FloatTexture, BilerpFloat>};
+    make_placed<FloatTexture, BilerpFloat>};
 extern const SpectrumTextureInfo bilerp_spectrum_texture{
     {"spectrum texture", "bilerp", "Bilinear interpolation of four spectra at the corners.", "pbrt-v4",
      kBilerpSpectrumParams},
-    make<SpectrumTexture, BilerpSpectrum>};
+    make_placed<SpectrumTexture, BilerpSpectrum>};
 extern const FloatTextureInfo fbm_float_texture{
     {"float texture", "fbm", "Fractal noise: a sum of octaves.", "Perlin 2002, pbrt-v4", kNoise},
-    make<FloatTexture, Fbm>};
+    make_placed<FloatTexture, Fbm>};
 extern const FloatTextureInfo wrinkled_float_texture{
     {"float texture", "wrinkled", "Turbulence: a sum of magnitudes of octaves.", "Perlin 2002, pbrt-v4", kNoise},
-    make<FloatTexture, Wrinkled>};
+    make_placed<FloatTexture, Wrinkled>};
 extern const FloatTextureInfo windy_float_texture{{"float texture", "windy", "Waves and gusts of wind.", "pbrt-v4", {}},
-                                                  make<FloatTexture, Windy>};
+                                                  make_placed<FloatTexture, Windy>};
 extern const SpectrumTextureInfo marble_spectrum_texture{
-    {"spectrum texture", "marble", "Veins of marble.", "Perlin 2002, pbrt-v4", kMarble}, make<SpectrumTexture, Marble>};
+    {"spectrum texture", "marble", "Veins of marble.", "Perlin 2002, pbrt-v4", kMarble},
+    make_placed<SpectrumTexture, Marble>};
 
 }  // namespace frond

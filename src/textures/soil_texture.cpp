@@ -14,7 +14,7 @@ constexpr auto kSoilNames = [] {
   return names;
 }();
 
-constexpr Param kParams[] = {
+constexpr Param kSoilParams[] = {
     {.name = "soil",
      .kind = ParamKind::string,
      .default_value = "dry_clay",
@@ -80,7 +80,7 @@ class SoilTexture final : public SpectrumTexture {
   std::shared_ptr<const FloatTexture> moisture_;
 };
 
-std::unique_ptr<SpectrumTexture> make(const Params& p, const TexturePlacement& placement) {
+std::unique_ptr<SpectrumTexture> make_soil(const Params& p, const TexturePlacement& placement) {
   return std::make_unique<SoilTexture>(p, placement);
 }
 
@@ -88,7 +88,7 @@ std::unique_ptr<SpectrumTexture> make(const Params& p, const TexturePlacement& p
 
 extern const SpectrumTextureInfo soil_spectrum_texture{
     {"spectrum texture", "soil", "Reflectance of bare soil, dry or wet.", "Jiang and Fang 2019, Verhoef et al. 2018",
-     kParams},
-    make};
+     kSoilParams},
+    make_soil};
 
 }  // namespace frond

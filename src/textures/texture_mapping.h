@@ -94,4 +94,10 @@ constexpr std::array<Param, N + kMappingParams.size()> with_mapping(const Param 
   (std::make_index_sequence<N>(), std::make_index_sequence<kMappingParams.size()>());
 }
 
+/// For records of textures.
+template <class Base, class T>
+std::unique_ptr<Base> make_placed(const Params& p, const TexturePlacement& placement) {
+  return std::make_unique<T>(p, placement);
+}
+
 }  // namespace frond

@@ -121,7 +121,7 @@ std::unique_ptr<SpectrumTexture> make_constant_spectrum(const Params& p, const T
 }
 
 template <class Base, class T>
-std::unique_ptr<Base> make(const Params& p, const TexturePlacement&) {
+std::unique_ptr<Base> make_unplaced(const Params& p, const TexturePlacement&) {
   return std::make_unique<T>(p);
 }
 
@@ -151,16 +151,17 @@ constexpr Param kMixSpectrum[] = {
 extern const FloatTextureInfo constant_float_texture{
     {"float texture", "constant", "Constant number.", "pbrt-v4", kConstantFloat}, make_constant_float};
 extern const FloatTextureInfo scale_float_texture{
-    {"float texture", "scale", "Product of two textures.", "pbrt-v4", kScaleFloat}, make<FloatTexture, ScaleFloat>};
+    {"float texture", "scale", "Product of two textures.", "pbrt-v4", kScaleFloat},
+    make_unplaced<FloatTexture, ScaleFloat>};
 extern const FloatTextureInfo mix_float_texture{
-    {"float texture", "mix", "Mixture of two textures.", "pbrt-v4", kMixFloat}, make<FloatTexture, MixFloat>};
+    {"float texture", "mix", "Mixture of two textures.", "pbrt-v4", kMixFloat}, make_unplaced<FloatTexture, MixFloat>};
 extern const SpectrumTextureInfo constant_spectrum_texture{
     {"spectrum texture", "constant", "Constant spectrum.", "pbrt-v4", kConstantSpectrum}, make_constant_spectrum};
 extern const SpectrumTextureInfo scale_spectrum_texture{
     {"spectrum texture", "scale", "Product of a texture and a number.", "pbrt-v4", kScaleSpectrum},
-    make<SpectrumTexture, ScaleSpectrum>};
+    make_unplaced<SpectrumTexture, ScaleSpectrum>};
 extern const SpectrumTextureInfo mix_spectrum_texture{
     {"spectrum texture", "mix", "Mixture of two textures.", "pbrt-v4", kMixSpectrum},
-    make<SpectrumTexture, MixSpectrum>};
+    make_unplaced<SpectrumTexture, MixSpectrum>};
 
 }  // namespace frond

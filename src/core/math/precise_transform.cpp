@@ -9,8 +9,6 @@ using Rows = PreciseTransform::Rows;
 
 constexpr double kFlat = 1e-10;
 
-Vec3d column(const Rows& m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
-
 Rows from_columns(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin) {
   return {{{x.x, y.x, z.x, origin.x}, {x.y, y.y, z.y, origin.y}, {x.z, y.z, z.z, origin.z}}};
 }
@@ -26,21 +24,21 @@ Rows invert(const Rows& m, double flat) {
   return {{{a.x, a.y, a.z, -dot(a, origin)}, {b.x, b.y, b.z, -dot(b, origin)}, {c.x, c.y, c.z, -dot(c, origin)}}};
 }
 
-Rows to_double(const Transform::Rows& m) {
-  Rows rows;
+}  // namespace
+
+Transform::RowsDouble to_double(const Transform::Rows& m) {
+  Transform::RowsDouble rows;
   for (size_t i = 0; i < 3; ++i) std::copy(m[i].begin(), m[i].end(), rows[i].begin());
   return rows;
 }
 
-Rows multiply(const Rows& a, const Rows& b) {
-  Rows product;
+Transform::RowsDouble multiply(const Transform::RowsDouble& a, const Transform::RowsDouble& b) {
+  Transform::RowsDouble product;
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 4; ++j)
       product[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j] + (j == 3 ? a[i][3] : 0);
   return product;
 }
-
-}  // namespace
 
 /// The limit is the rounding of decimals in a scene file.
 PreciseTransform::PreciseTransform(const Rows& rows) : rows_(rows), inverse_(invert(rows, kFlat)) {}

@@ -50,6 +50,11 @@ class PreciseTransform {
   Rows rows_ = kIdentity, inverse_ = kIdentity;
 };
 
+inline Vec3d column(const Transform::RowsDouble& m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
+Transform::RowsDouble to_double(const Transform::Rows& m);
+/// The matrix that applies `b` first, then `a`.
+Transform::RowsDouble multiply(const Transform::RowsDouble& a, const Transform::RowsDouble& b);
+
 /// Largest absolute value of the coordinates.
 inline double largest_coordinate(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 

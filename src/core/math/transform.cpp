@@ -9,8 +9,6 @@ namespace {
 
 using RowsDouble = Transform::RowsDouble;
 
-Vec3d column(const RowsDouble& m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
-
 Transform::Rows to_float(const RowsDouble& m) {
   Transform::Rows rows;
   for (size_t i = 0; i < 3; ++i)
@@ -18,19 +16,8 @@ Transform::Rows to_float(const RowsDouble& m) {
   return rows;
 }
 
-RowsDouble to_double(const Transform::Rows& m) {
-  RowsDouble rows;
-  for (size_t i = 0; i < 3; ++i) std::copy(m[i].begin(), m[i].end(), rows[i].begin());
-  return rows;
-}
-
-Transform::Rows multiply(const Transform::Rows& a, const Transform::Rows& b) {
-  const RowsDouble p = to_double(a), q = to_double(b);
-  RowsDouble product;
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 4; ++j)
-      product[i][j] = p[i][0] * q[0][j] + p[i][1] * q[1][j] + p[i][2] * q[2][j] + (j == 3 ? p[i][3] : 0);
-  return to_float(product);
+Transform::Rows product_of(const Transform::Rows& a, const Transform::Rows& b) {
+  return to_float(multiply(to_double(a), to_double(b)));
 }
 
 bool is_finite(const Transform::Rows& m) {
@@ -64,7 +51,7 @@ Transform Transform::look_at(const Vec3& eye, const Vec3& target, const Vec3& up
 }
 
 Transform operator*(const Transform& a, const Transform& b) {
-  return {multiply(a.rows_, b.rows_), multiply(b.inverse_, a.inverse_)};
+  return {product_of(a.rows_, b.rows_), product_of(b.inverse_, a.inverse_)};
 }
 
 bool Transform::is_valid() const { return is_finite(rows_) && is_finite(inverse_); }

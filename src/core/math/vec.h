@@ -6,6 +6,7 @@
 namespace frond {
 
 inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr double kPiD = 3.14159265358979323846, kDegree = kPiD / 180;  ///< a degree in radians
 inline constexpr float kInvPi = 0.31830988618379067154f;
 
 /// Three components: a point, a vector or a normal. The renderer uses `float`, the random walk in leaves `double`.

@@ -9,7 +9,7 @@
 namespace frond {
 namespace {
 
-constexpr double kDegree = 180 / std::numbers::pi;
+constexpr double kDegrees = 180 / std::numbers::pi;
 
 // Contents per leaf area, in which the literature and PROSPECT give what a leaf consists of.
 constexpr std::string_view kPerArea = "divide it by thickness x mesophyllfraction; 1 ug/cm2 is 1e-5 kg/m^2",
@@ -28,8 +28,8 @@ struct OtherUnit {
 // Limits: a right angle and a turn; the air pressure on Mount Everest is 33 kPa; there are at most 7 cm of water vapour
 // in the tropics; 100 ug/cm2 of chlorophyll in a leaf of 0.1 mm are 20 kg/m^3, 20 ug/cm2 of carotenoids are 4 kg/m^3.
 constexpr OtherUnit kOtherUnits[] = {
-    {PhysicalQuantity::angle, {0, 1.5709}, "in radians", kDegree},
-    {PhysicalQuantity::sweep, {0, 6.2833}, "in radians", kDegree},
+    {PhysicalQuantity::angle, {0, 1.5709}, "in radians", kDegrees},
+    {PhysicalQuantity::sweep, {0, 6.2833}, "in radians", kDegrees},
     {PhysicalQuantity::air_pressure, {0, 1.2}, "in atm or bar", 101325},
     {PhysicalQuantity::air_pressure, {20, 120}, "in kPa", 1000},
     {PhysicalQuantity::air_pressure, {120, 1200}, "in hPa (mbar)", 100},

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/vec.h"
 #include "lights/sky_model.h"
 #include "spectra/cie.h"
 #include "spectra/color/color_space.h"
@@ -11,7 +11,6 @@
 namespace frond::mitsuba {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 /// Rows of the map by latitude and longitude for each row of a square image: its texels are then narrower.
 constexpr int kRowsPerRow = 16, kMostRows = 2048;
 

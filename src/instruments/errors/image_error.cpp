@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace frond {
-namespace {
-
-double square(double x) { return x * x; }
-
-}  // namespace
-
 double ImageError::bias() const { return bias_squared.root(); }
 
 double ImageError::bias_upper() const { return bias_squared.root_at(kZ95); }

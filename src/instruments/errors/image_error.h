@@ -6,6 +6,8 @@
 
 namespace frond {
 
+inline double square(double x) { return x * x; }
+
 /// Mean over pixels of squared differences, with its standard error. If it is smaller than the noise, the estimate may
 /// be negative.
 struct MeanSquare {

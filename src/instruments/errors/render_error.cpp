@@ -3,8 +3,6 @@
 namespace frond {
 namespace {
 
-double square(double x) { return x * x; }
-
 /// Mean of the values added, and an upper bound of its standard error.
 class BoundedMean {
  public:

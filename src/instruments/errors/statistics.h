@@ -11,6 +11,14 @@ namespace frond {
 struct MeanError {
   double mean = 0, standard_error = 0;
 };
+/// Returns a value times a number without an error.
+inline MeanError scaled(const MeanError& v, double factor) { return {v.mean * factor, v.standard_error * factor}; }
+/// Returns v / by for independent errors; not a number unless `by` is above 0.
+inline MeanError divided(const MeanError& v, const MeanError& by) {
+  if (!(by.mean > 0)) return {NAN, NAN};
+  const double ratio = v.mean / by.mean;
+  return {ratio, std::hypot(v.standard_error, ratio * by.standard_error) / by.mean};
+}
 
 /// An estimated expectation, with the variance and the third cumulant of the estimate; both add for independent
 /// estimates.

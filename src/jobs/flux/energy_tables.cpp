@@ -19,14 +19,6 @@ struct KnownRange {
 constexpr KnownRange kPar{"par", {400, 700}};
 constexpr KnownRange kKnown[] = {kPar, {"nir", {700, 1100}}, {"shortwave", {300, 2500}}};
 
-/// Returns a value times a number without an error.
-MeanError scaled(const MeanError& v, double factor) { return {v.mean * factor, v.standard_error * factor}; }
-/// Returns v / by with independent errors; unknown if `by` is 0.
-MeanError divided(const MeanError& v, const MeanError& by) {
-  if (!(by.mean > 0)) return {NAN, NAN};
-  return {v.mean / by.mean, std::hypot(v.standard_error, v.mean / by.mean * by.standard_error) / by.mean};
-}
-
 /// Index of the band from 400 to 700 nm.
 std::optional<size_t> par_band(const EnergyBudget& budget) {
   for (size_t band = 0; band < budget.incident.size(); ++band)

@@ -34,14 +34,13 @@ void check_physical(const SceneDescription& description, const JobRun& run) {
 
 /// Returns the wavelengths for which optics are known.
 Interval optics_range(const JobRun& run, const SceneDescription& description) {
-  constexpr Interval kAll{300, 2500};
   const auto given = run.args.numbers("optics-range");
   if (given.empty()) {
     const auto leaves = leaf_flags(description, run.session().registry());
-    return std::ranges::find(leaves, 1) == leaves.end() ? kAll : leaf::kConstantsRange_nm;
+    return std::ranges::find(leaves, 1) == leaves.end() ? kWavelengthRange_nm : leaf::kConstantsRange_nm;
   }
   const Interval nm{given[0], given[1]};
-  if (!(nm.max - nm.min >= 1 && kAll.contains(nm.min) && kAll.contains(nm.max)))
+  if (!(nm.max - nm.min >= 1 && kWavelengthRange_nm.contains(nm.min) && kWavelengthRange_nm.contains(nm.max)))
     fail({}, "{}: {:g} to {:g} nm is not a range within 300 to 2500 nm", run.args.spelled("optics-range"), nm.min,
          nm.max);
   return nm;

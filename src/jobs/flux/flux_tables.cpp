@@ -9,14 +9,14 @@ namespace frond {
 namespace {
 
 /// One quantity of the light budget, by band.
-struct Row {
+struct ShareRow {
   std::string quantity, material;
   const std::vector<MeanError>& shares;
 };
 
 /// Returns the rows of the budget, in the order of the tables.
-std::vector<Row> rows_of(const FluxMeasurement& measurement) {
-  std::vector<Row> rows{{"reflected", "", measurement.reflected}, {"transmitted", "", measurement.transmitted}};
+std::vector<ShareRow> share_rows(const FluxMeasurement& measurement) {
+  std::vector<ShareRow> rows{{"reflected", "", measurement.reflected}, {"transmitted", "", measurement.transmitted}};
   for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"absorbed", m.name, m.absorbed});
   rows.push_back({"sum", "", measurement.sum});
   for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"incident", m.name, m.incident});
@@ -33,13 +33,13 @@ std::string absorption_column(const Band& band) {
 
 Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
-  const auto add = [&table](const Row& row, const Band& band, const MeanError& share) {
+  const auto add = [&table](const ShareRow& row, const Band& band, const MeanError& share) {
     table.add("quantity", row.quantity);
     table.add("material", row.material);
     add_band(table, band);
     table.add("share", share);
   };
-  for (const Row& row : rows_of(measurement)) {
+  for (const ShareRow& row : share_rows(measurement)) {
     for (size_t band = 0; band < measurement.bands.size(); ++band) add(row, measurement.bands[band], row.shares[band]);
     if (photons) add(row, {std::numeric_limits<double>::quiet_NaN()}, photons->share(row.shares));
   }
@@ -49,7 +49,7 @@ Table share_table(const FluxMeasurement& measurement, const std::optional<Photon
 
 std::string share_text(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
-  for (const Row& row : rows_of(measurement)) {
+  for (const ShareRow& row : share_rows(measurement)) {
     table.add("share", row.quantity);
     table.add("material", row.material);
     if (photons) table.add("PAR photons", photons->share(row.shares));

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 
+#include "core/math/vec.h"
 #include "scene/format/plugin_text.h"
 #include "system/file_bytes.h"
 #include "system/text_table.h"
@@ -15,7 +15,6 @@
 namespace frond {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kRightAngle = 90;
 
 constexpr Param kEllipsoidalParams[] = {

@@ -17,16 +17,6 @@ namespace {
 /// Number of a missing value.
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns a mean in another unit.
-MeanError scaled(const MeanError& v, double by) { return {v.mean * by, v.standard_error * by}; }
-
-/// Returns the ratio of two independent means.
-MeanError ratio(const MeanError& a, const MeanError& b) {
-  if (!(b.mean > 0)) return {kNone, kNone};
-  const double value = a.mean / b.mean;
-  return {value, std::hypot(a.standard_error, value * b.standard_error) / b.mean};
-}
-
 /// Returns the comment lines of the CSV file. Every result names the emission shape, which decides the ratio of its
 /// peaks.
 std::vector<std::string> notes_of(const JobRun& run, const FluorescenceFluxMeasurement& flux, bool has_units) {
@@ -172,7 +162,7 @@ Result fluorescence_brf_result(const JobRun& run, const BrfMeter& meter, const B
       table.add("wavelength_nm", nm);
       table.add("radiance", scaled(radiance, 1e3));
       table.add("photon_radiance", scaled(photons, 1e3));
-      table.add("escape", ratio(scaled(photons, std::numbers::pi), scaled(flux.left[band], flux.incident)));
+      table.add("escape", divided(scaled(photons, std::numbers::pi), scaled(flux.left[band], flux.incident)));
       text.add(fmt::format("{:g} nm", nm), scaled(radiance, 1e3));
     }
   }

@@ -13,44 +13,45 @@
 namespace frond::leaf {
 namespace {
 
-enum Column : size_t { kExcitation, kEmission, kMb, kMf, kTheta, kColumns };
-constexpr std::string_view kNames[kColumns] = {"excitation_nm", "emission_nm", "Mb", "Mf", "theta_deg"};
+enum MatrixColumn : size_t { kExcitation, kEmission, kMb, kMf, kMatrixTheta, kMatrixColumnCount };
+constexpr std::string_view kMatrixColumns[kMatrixColumnCount] = {"excitation_nm", "emission_nm", "Mb", "Mf",
+                                                                 "theta_deg"};
 
 /// Returns the fields of a row that hold the columns above. Others, as standard errors, are passed over. Only
 /// "theta_deg" may be missing.
-std::array<std::optional<size_t>, kColumns> columns_of(const TextTable& table) {
-  std::array<std::optional<size_t>, kColumns> fields;
+std::array<std::optional<size_t>, kMatrixColumnCount> columns_of(const TextTable& table) {
+  std::array<std::optional<size_t>, kMatrixColumnCount> fields;
   for (size_t i = 0; i < table.names().size(); ++i)
-    for (size_t c = 0; c < kColumns; ++c) {
-      if (lower_case(table.names()[i].text) != lower_case(kNames[c])) continue;
-      if (fields[c]) fail(table.names_where(i), "there are two columns \"{}\"", kNames[c]);
+    for (size_t c = 0; c < kMatrixColumnCount; ++c) {
+      if (lower_case(table.names()[i].text) != lower_case(kMatrixColumns[c])) continue;
+      if (fields[c]) fail(table.names_where(i), "there are two columns \"{}\"", kMatrixColumns[c]);
       fields[c] = i;
     }
-  for (size_t c = 0; c < kTheta; ++c)
+  for (size_t c = 0; c < kMatrixTheta; ++c)
     if (!fields[c])
       fail(table.names_where(),
            "there is no column \"{}\": matrices of fluorescence have the columns {}, and may have \"theta_deg\", above "
            "90 for light on the abaxial side",
-           kNames[c], fmt::join(std::begin(kNames), std::begin(kNames) + kTheta, ","));
+           kMatrixColumns[c], fmt::join(std::begin(kMatrixColumns), std::begin(kMatrixColumns) + kMatrixTheta, ","));
   return fields;
 }
 
 /// Returns a number of the current row. Throws InputError if it is none or outside the range.
-double checked(const TextTable& table, size_t field, Column column) {
+double checked(const TextTable& table, size_t field, MatrixColumn column) {
   const std::string_view text = table.fields()[field].text;
   const auto number = table.number(text);
-  if (!number) fail(table.where(field), "{} is a number, \"{}\" was given", kNames[column], text);
+  if (!number) fail(table.where(field), "{} is a number, \"{}\" was given", kMatrixColumns[column], text);
   const double v = *number;
   if (column == kMb || column == kMf) {
     if (!(v >= 0 && std::isfinite(v)))
-      fail(table.where(field), "{} is a number of photons per nm, at least 0; {} was given", kNames[column], v);
+      fail(table.where(field), "{} is a number of photons per nm, at least 0; {} was given", kMatrixColumns[column], v);
     return v;
   }
   const Interval range = column == kExcitation ? frond::kExcitation_nm
                          : column == kEmission ? frond::kEmission_nm
                                                : Interval{0, 180};
   if (!range.contains(v))
-    fail(table.where(field), "{} is from {} to {}, {} was given", kNames[column], range.min, range.max, v);
+    fail(table.where(field), "{} is from {} to {}, {} was given", kMatrixColumns[column], range.min, range.max, v);
   return v;
 }
 
@@ -132,12 +133,12 @@ EmissionMatrices::EmissionMatrices(std::string_view text, const std::string& nam
   std::array<double, 2> angle{};
   while (table.next()) {
     table.check_fields();
-    const auto number = [&](Column c) { return checked(table, *fields[c], c); };
-    const double theta = fields[kTheta] ? number(kTheta) : 0;
+    const auto number = [&](MatrixColumn c) { return checked(table, *fields[c], c); };
+    const double theta = fields[kMatrixTheta] ? number(kMatrixTheta) : 0;
     std::vector<Row>& side = rows[theta > 90];
     double& angle_of_side = angle[theta > 90];
     if (!side.empty() && theta != angle_of_side)
-      fail(table.where(*fields[kTheta]),
+      fail(table.where(*fields[kMatrixTheta]),
            "theta_deg {} after {}: the emission does not depend on the angle of incidence; keep the rows of one angle "
            "up to 90 and of one above 90",
            theta, angle_of_side);

@@ -15,8 +15,8 @@ namespace frond::leaf {
 namespace {
 
 /// Relative errors of interpolation between the sines are below 1e-4 with this number.
-constexpr int kCells = 10;
-constexpr size_t kSines = kCells + 3;
+constexpr int kSineCells = 10;
+constexpr size_t kSines = kSineCells + 3;
 /// Values of a pair of wavelengths and an incident sine: shares that leave above and below, the share that is
 /// reabsorbed, and the distributions over the leaving sines above and below.
 constexpr size_t kReabsorbed = 2, kToward = 3, kValues = kToward + 2 * kSines;
@@ -31,7 +31,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-SineNodes nodes_of(const Vec3d& w) { return {static_cast<float>(std::min(1.0, std::hypot(w.x, w.y))), kCells}; }
+SineNodes nodes_of(const Vec3d& w) { return {static_cast<float>(std::min(1.0, std::hypot(w.x, w.y))), kSineCells}; }
 
 double entering(const Tissue& tissue, const Vec3d& w) {
   return 1 - fresnel(std::abs(w.z), 1 / tissue.n_cuticle()).reflectance;
@@ -41,7 +41,7 @@ double entering(const Tissue& tissue, const Vec3d& w) {
 
 FluorescenceTable::FluorescenceTable(const TissueParams& params, const ThreadPool& pool)
     : model_(params), emissions_(kEmissions.size()), per_sine_(kValues), per_pair_(kSines * kValues) {
-  const std::vector<double> sines = grid_sines(kCells);
+  const std::vector<double> sines = grid_sines(kSineCells);
   const int nodes = mode_nodes(model_.at(kEmission_nm.min));
   std::vector<SolvedEmission> emissions(emissions_);
   pool.for_each(static_cast<int64_t>(emissions_), [&](int64_t i, int) {

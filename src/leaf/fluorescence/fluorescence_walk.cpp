@@ -9,8 +9,6 @@
 namespace frond::leaf {
 namespace {
 
-constexpr auto kNoConnection = [](const Lobe&) {};
-
 /// Share of the medium's thickness between its upper boundary and the point where a ray is absorbed that passes it.
 double absorption_depth(const Walker<1>& ray, RandomStream& rng) {
   const double attenuation = ray.attenuation(), uniform = rng.uniform_double();

@@ -11,7 +11,7 @@ namespace frond::leaf {
 namespace {
 
 constexpr size_t kNodes = TableLookup::kNodes, kSide = TableLookup::kCells + 1;
-using Column = std::array<Shares, kNodes>;
+using ShareColumn = std::array<Shares, kNodes>;
 
 /// Cosines of the nodes of a side.
 std::vector<double> node_cosines() {
@@ -51,7 +51,7 @@ struct SubsurfaceFactors {
 };
 
 /// Given the means over a side of d, d Rd and d T, d follows from Rd and T at each direction.
-SubsurfaceFactors subsurface_factors(const Column& column) {
+SubsurfaceFactors subsurface_factors(const ShareColumn& column) {
   constexpr int kMostSteps = 500;
   constexpr double kDone = 1e-13;
   SubsurfaceFactors factors;
@@ -81,7 +81,7 @@ SubsurfaceFactors subsurface_factors(const Column& column) {
 }
 
 /// s on one side.
-std::vector<double> surface_factors(LobeScaler& lobe, const Column& column, size_t first) {
+std::vector<double> surface_factors(LobeScaler& lobe, const ShareColumn& column, size_t first) {
   const auto reflectance = [&](double cos_theta) {
     const auto [node, t] = TableLookup::position(static_cast<float>(cos_theta));
     return std::lerp(column[first + node].surface, column[first + node + 1].surface, static_cast<double>(t));
@@ -110,7 +110,7 @@ std::vector<Float4> by_lanes(const std::vector<float>& values) {
 
 ReciprocalLookup::ReciprocalLookup(const TableLookup& shares, const Interval& exponents)
     : axis_(exponents), columns_(shares.columns()) {
-  std::vector<Column> columns(columns_);
+  std::vector<ShareColumn> columns(columns_);
   for (size_t c = 0; c < columns_; ++c) {
     for (size_t i = 0; i < kNodes; ++i) columns[c][i] = shares.shares(c, i);
     const SubsurfaceFactors subsurface = subsurface_factors(columns[c]);
@@ -121,7 +121,7 @@ ReciprocalLookup::ReciprocalLookup(const TableLookup& shares, const Interval& ex
     LobeScaler lobe(exponent, node_cosines());
     const Shares* last = nullptr;  // the side that `factors` are for: depths, and mostly both sides, share one surface
     std::vector<double> factors;
-    for (const Column& column : columns)
+    for (const ShareColumn& column : columns)
       for (const size_t first : {size_t{0}, kSide}) {
         if (!last || !equal_surfaces(last, &column[first])) factors = surface_factors(lobe, column, first);
         last = &column[first];

@@ -14,14 +14,15 @@
 namespace frond::leaf {
 namespace {
 
-enum Column : size_t { kTheta, kWavelength, kRs, kRd, kT, kRsError, kRdError, kTError, kColumns };
-constexpr std::string_view kNames[kColumns] = {"theta_deg", "wavelength_nm", "Rs", "Rd", "T", "Rs_se", "Rd_se", "T_se"};
+enum TableColumn : size_t { kTheta, kWavelength, kRs, kRd, kT, kRsError, kRdError, kTError, kColumns };
+constexpr std::string_view kTableColumns[kColumns] = {"theta_deg", "wavelength_nm", "Rs",    "Rd",
+                                                      "T",         "Rs_se",         "Rd_se", "T_se"};
 constexpr size_t kRequired = kT + 1;
 /// Columns that instruments write in addition and that follow from the others.
 constexpr std::string_view kPassedOver[] = {"R", "A", "R_se", "A_se"};
 constexpr std::string_view kErrorComment = "# error ";
 
-struct Row {
+struct TableRow {
   std::array<double, kColumns> value{};
   Location where;
 
@@ -43,16 +44,16 @@ class Header {
       has_[columns_.back()] = true;
     }
     for (size_t c = 0; c < kRequired; ++c)
-      if (!has_[c]) fail(table.names_where(), "there is no column \"{}\"; {}", kNames[c], expected());
+      if (!has_[c]) fail(table.names_where(), "there is no column \"{}\"; {}", kTableColumns[c], expected());
     if (has_errors() != (has_[kRdError] && has_[kTError]) || has_[kRdError] != has_[kTError])
       fail(table.names_where(), "the columns Rs_se, Rd_se and T_se come together or not at all");
   }
 
   bool has_errors() const { return has_[kRsError]; }
   /// Returns the row that the table has read.
-  Row row() const {
+  TableRow row() const {
     table_.check_fields();
-    Row row{.where = table_.where()};
+    TableRow row{.where = table_.where()};
     for (size_t i = 0; i < columns_.size(); ++i)
       if (columns_[i] != kColumns) row.value[columns_[i]] = checked(columns_[i], i);
     const double sum = row.value[kRs] + row.value[kRd] + row.value[kT];
@@ -64,16 +65,16 @@ class Header {
  private:
   static std::string expected() {
     return fmt::format("a leaf's table has the columns {}, and may have {}",
-                       fmt::join(std::begin(kNames), std::begin(kNames) + kRequired, ","),
-                       fmt::join(std::begin(kNames) + kRequired, std::end(kNames), ","));
+                       fmt::join(std::begin(kTableColumns), std::begin(kTableColumns) + kRequired, ","),
+                       fmt::join(std::begin(kTableColumns) + kRequired, std::end(kTableColumns), ","));
   }
 
   static size_t column(std::string_view name, const Location& where) {
     const auto is = [&](std::string_view other) { return lower_case(name) == lower_case(other); };
     if (name.empty() || std::ranges::any_of(kPassedOver, is)) return kColumns;
-    const auto* found = std::ranges::find_if(kNames, is);
-    if (found != std::end(kNames)) return static_cast<size_t>(found - kNames);
-    const std::string_view meant = nearest(name, {std::begin(kNames), std::end(kNames)});
+    const auto* found = std::ranges::find_if(kTableColumns, is);
+    if (found != std::end(kTableColumns)) return static_cast<size_t>(found - kTableColumns);
+    const std::string_view meant = nearest(name, {std::begin(kTableColumns), std::end(kTableColumns)});
     fail(where, "there is no column \"{}\" in a leaf's table{}; {}", name,
          meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant), expected());
   }
@@ -82,12 +83,12 @@ class Header {
     const std::string_view text = table_.fields()[field].text;
     const Location where = table_.where(field);
     const auto number = table_.number(text);
-    if (!number) fail(where, "{} is a number, \"{}\" was given", kNames[column], text);
+    if (!number) fail(where, "{} is a number, \"{}\" was given", kTableColumns[column], text);
     const double v = *number;
     if (column == kTheta && !(v >= 0 && v <= 180)) fail(where, "theta_deg is from 0 to 180, {} was given", v);
     if (column == kWavelength && !(v > 0 && std::isfinite(v))) fail(where, "wavelength_nm is above 0, {} was given", v);
     if (column >= kRs && !(v >= 0 && v <= 1))
-      fail(where, "{} is a share of the light, from 0 to 1; {} was given", kNames[column], v);
+      fail(where, "{} is a share of the light, from 0 to 1; {} was given", kTableColumns[column], v);
     return v;
   }
 
@@ -97,9 +98,9 @@ class Header {
 };
 
 /// All rows of one wavelength, in the file's order.
-using Spectrum = std::vector<Row>;
+using Spectrum = std::vector<TableRow>;
 
-void add(std::vector<Spectrum>& spectra, std::map<double, size_t>& known, const Row& row) {
+void add(std::vector<Spectrum>& spectra, std::map<double, size_t>& known, const TableRow& row) {
   const double nm = row.value[kWavelength], theta = row.value[kTheta];
   const auto [place, is_new] = known.emplace(nm, spectra.size());
   if (is_new) spectra.emplace_back();
@@ -110,7 +111,7 @@ void add(std::vector<Spectrum>& spectra, std::map<double, size_t>& known, const 
   rows.push_back(row);
 }
 
-[[noreturn]] void fail_missing(const Row& row, double theta, const Row& of_other) {
+[[noreturn]] void fail_missing(const TableRow& row, double theta, const TableRow& of_other) {
   fail(row.where, "{} nm has no row for theta_deg {}, which {} nm has (line {}): all wavelengths need the same angles",
        row.value[kWavelength], theta, of_other.value[kWavelength], of_other.where.line);
 }
@@ -127,11 +128,11 @@ void check_same_angles(const Spectrum& first, const Spectrum& other) {
 
 Table assemble(const std::vector<Spectrum>& spectra, bool has_errors) {
   Table table;
-  for (const Row& row : spectra[0]) table.theta_deg.push_back(row.value[kTheta]);
+  for (const TableRow& row : spectra[0]) table.theta_deg.push_back(row.value[kTheta]);
   for (const Spectrum& rows : spectra) {
     check_same_angles(spectra[0], rows);
     table.wavelengths_nm.push_back(rows[0].value[kWavelength]);
-    for (const Row& row : rows) {
+    for (const TableRow& row : rows) {
       table.shares.push_back(row.shares());
       if (has_errors) table.standard_errors.push_back(row.errors());
     }
@@ -148,7 +149,8 @@ Table assemble(const std::vector<Spectrum>& spectra, bool has_errors) {
 std::string to_csv(const Table& table, std::string_view header) {
   std::string text = fmt::format("{}{}{}\n", header, kErrorComment, table.error);
   const bool has_errors = !table.standard_errors.empty();
-  text += fmt::format("{}\n", fmt::join(std::begin(kNames), has_errors ? std::end(kNames) : kNames + kRequired, ","));
+  text += fmt::format("{}\n", fmt::join(std::begin(kTableColumns),
+                                        has_errors ? std::end(kTableColumns) : kTableColumns + kRequired, ","));
   const auto out = std::back_inserter(text);
   const size_t angles = table.theta_deg.size();
   for (size_t i = 0; i < table.shares.size(); ++i) {
@@ -199,7 +201,7 @@ bool is_leaf_table(std::string_view text) {
   const TextTable table(text, {});
   return table.columns() == 0 || std::ranges::any_of(table.names(), [](const TableField& f) {
            const std::string name = lower_case(f.text);
-           return name == lower_case(kNames[kRs]) || name == lower_case(kNames[kRd]);
+           return name == lower_case(kTableColumns[kRs]) || name == lower_case(kTableColumns[kRd]);
          });
 }
 

@@ -10,9 +10,9 @@ constexpr boost::math::policies::policy<boost::math::policies::promote_double<fa
 
 /// x as a function of the share beyond, and its derivative. (1 - s) / 2 has the beta distribution of parameters a and
 /// a.
-struct Node {
+struct QuantileNode {
   double x, slope;
-  Node(double a, double beyond) {
+  QuantileNode(double a, double beyond) {
     const double b = boost::math::ibeta_inv(a, a, beyond / 2, kInDouble);
     x = std::sqrt(2 * b);
     slope = 0.5 / (boost::math::ibeta_derivative(a, a, b, kInDouble) * x);
@@ -24,10 +24,10 @@ struct Node {
 PowerQuantile::PowerQuantile(double a) {
   const uint32_t last = std::bit_cast<uint32_t>(1.f) >> kBitsInside;
   const auto place = [](uint32_t cell) { return static_cast<double>(std::bit_cast<float>(cell << kBitsInside)); };
-  Node from(a, place(kFirstCell));
+  QuantileNode from(a, place(kFirstCell));
   for (uint32_t cell = kFirstCell; cell < last; ++cell) {
     const double width = place(cell + 1) - place(cell);
-    const Node to(a, place(cell + 1));
+    const QuantileNode to(a, place(cell + 1));
     const double rise = to.x - from.x, begin = width * from.slope, end = width * to.slope;
     cells_.push_back(Float4{static_cast<float>(from.x), static_cast<float>(begin),
                             static_cast<float>(3 * rise - 2 * begin - end),

@@ -16,10 +16,10 @@ namespace {
 constexpr size_t kStep = 5;
 constexpr WavelengthGrid kCoarse{400, 5, 421};
 
-using Row = std::array<double, 8>;  ///< columns of the file
+using ProspectRow = std::array<double, 8>;  ///< columns of the file
 
-Row row_of(std::string_view line) {
-  Row row{};
+ProspectRow row_of(std::string_view line) {
+  ProspectRow row{};
   const char* at = line.data();
   for (double& x : row) {
     const auto [end, error] = std::from_chars(at, line.data() + line.size(), x);

@@ -6,8 +6,6 @@
 namespace frond::leaf {
 namespace {
 
-constexpr auto kNoConnection = [](const Lobe&) {};
-
 template <size_t K>
 struct End {
   Fate fate;

@@ -56,6 +56,9 @@ struct InnerDirection {
   }
 };
 
+/// For walks that connect their lobes with nothing outside.
+inline constexpr auto kNoConnection = [](const Lobe&) {};
+
 /// State of a walk through the leaf, at K wavelengths at once.
 ///
 /// The hero's random numbers draw the path: the branch at each interface, the directions from lobes, and the direction

@@ -1,7 +1,6 @@
 #include "materials/lobes/beam_diffusion.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/math/vec.h"
 #include "materials/lobes/catmull_rom.h"
@@ -10,7 +9,6 @@
 namespace frond {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr int kDepths = 100;  // of the beam
 
 /// Depth of a quantile of the light that a beam loses: midpoints of equal shares.

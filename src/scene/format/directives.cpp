@@ -198,7 +198,6 @@ struct DirectiveEntry {
 };
 
 using Builder = DescriptionBuilder;
-using Scene = SceneDescription;
 
 constexpr DirectiveEntry kDirectives[] = {
     {"Accelerator", Block::options, accelerator},
@@ -214,7 +213,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"CoordinateSystem", Block::any, with_name<&Builder::name_transform>},
     {"Film", Block::options, with_plugin<&Builder::film>},
     {"Identity", Block::any, [](Directive d) { d.scene().set_transform(SceneTransform(), d.name, d.where); }},
-    {"Integrator", Block::options, option_plugin<&Scene::integrator>},
+    {"Integrator", Block::options, option_plugin<&SceneDescription::integrator>},
     {"LightSource", Block::world, with_plugin<&Builder::light>},
     {"LookAt", Block::any, look_at},
     {"MakeNamedMaterial", Block::world, make_named_material},
@@ -226,10 +225,10 @@ constexpr DirectiveEntry kDirectives[] = {
     {"ObjectEnd", Block::world, without_arguments<&Builder::object_end>},
     {"ObjectInstance", Block::world, with_name<&Builder::object_instance>},
     {"Option", Block::any, option},
-    {"PixelFilter", Block::options, option_plugin<&Scene::filter>},
+    {"PixelFilter", Block::options, option_plugin<&SceneDescription::filter>},
     {"ReverseOrientation", Block::world, [](Directive d) { d.scene().reverse_orientation(); }},
     {"Rotate", Block::any, rotate},
-    {"Sampler", Block::options, option_plugin<&Scene::sampler>},
+    {"Sampler", Block::options, option_plugin<&SceneDescription::sampler>},
     {"Scale", Block::any, scale},
     {"Shape", Block::world, with_plugin<&Builder::shape>},
     {"Texture", Block::world, texture},

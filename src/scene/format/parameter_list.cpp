@@ -82,7 +82,7 @@ struct Declaration {
 };
 
 /// Splits a declaration into type and name. Throws InputError for other numbers of words.
-Declaration split(const std::string& text, const Location& where) {
+Declaration declaration_of(const std::string& text, const Location& where) {
   constexpr std::string_view kBlanks = " \t";
   const std::string_view all = text;
   const auto word_at = [&](size_t from) {
@@ -171,7 +171,7 @@ ParsedParam ParameterReader::read_one(Tokenizer& tokens, bool type_is_optional) 
   p.where = tokens.where(declaration);
   if (declaration.kind != Kind::string) fail(p.where, "a quoted name is needed, {} was given", declaration.shown());
   const std::string text = tokens.text_of(declaration);
-  const auto [type, name] = split(text, p.where);
+  const auto [type, name] = declaration_of(text, p.where);
   if (type.empty() && !type_is_optional) fail(p.where, "parameter \"{}\" has no type, as in \"float {}\"", name, name);
   p.name = name;
   const Token first = tokens.next();

@@ -1,14 +1,13 @@
 #include "scene/geometry/leaf_angles.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 
 namespace frond {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr double kStep = kPiD / 2 / LeafAngles::kSteps;
 
 }  // namespace
@@ -51,7 +50,6 @@ LeafAngles ellipsoidal_angles(double chi) {
 
 /// Bisection of log chi: the mean falls from 90 to 0 degrees as chi grows.
 double chi_of_mean(double mean) {
-  constexpr double kDegree = kPiD / 180;
   constexpr int kHalvings = 50;
   const double most = ellipsoidal_angles(kLeastChi).mean(), least = ellipsoidal_angles(kMostChi).mean();
   if (!(mean >= least && mean <= most))

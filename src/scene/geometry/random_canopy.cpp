@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 #include "scene/geometry/instance_writer.h"
 
 namespace frond {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 /// Share of a row by which a plot may be too narrow for its last row, for rounding errors.
 constexpr double kWholeRows = 1e-9;
 

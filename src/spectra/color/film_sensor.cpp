@@ -10,14 +10,14 @@
 namespace frond {
 namespace {
 
-constexpr int kFirst_nm = int(kCieRange_nm.min), kLast_nm = int(kCieRange_nm.max);
+constexpr int kFirstCie_nm = int(kCieRange_nm.min), kLastCie_nm = int(kCieRange_nm.max);
 constexpr double kTableFirst_nm = 380, kTableStep_nm = 10;
 
 /// Values of one line of a table, from 380 nm in steps of 10 nm.
-using Row = std::vector<double>;
+using CsvRow = std::vector<double>;
 
 /// Value at a wavelength by linear interpolation; 0 outside the table.
-double linear_at(const Row& row, double nm) {
+double linear_at(const CsvRow& row, double nm) {
   const double x = (nm - kTableFirst_nm) / kTableStep_nm;
   if (x < 0 || x > double(row.size() - 1)) return 0;
   const auto i = std::min(size_t(x), row.size() - 2);
@@ -25,8 +25,8 @@ double linear_at(const Row& row, double nm) {
 }
 
 /// Returns the values of all lines that begin with `beginning`; comment lines are skipped.
-std::vector<Row> rows_of(std::string_view csv, std::string_view beginning) {
-  std::vector<Row> rows;
+std::vector<CsvRow> rows_of(std::string_view csv, std::string_view beginning) {
+  std::vector<CsvRow> rows;
   for (size_t begin = 0; begin < csv.size();) {
     const size_t end = std::min(csv.find('\n', begin), csv.size());
     std::string_view line = csv.substr(begin, end - begin);
@@ -34,7 +34,7 @@ std::vector<Row> rows_of(std::string_view csv, std::string_view beginning) {
     if (line.empty() || line.front() == '#' || !line.starts_with(beginning)) continue;
     line.remove_prefix(beginning.size());
     const char* const last = line.data() + line.size();
-    Row row;
+    CsvRow row;
     for (const char* at = line.data(); at < last; ++at) {
       row.push_back(0);
       at = std::from_chars(at, last, row.back()).ptr;
@@ -46,23 +46,23 @@ std::vector<Row> rows_of(std::string_view csv, std::string_view beginning) {
 
 std::vector<Triple> observer() {
   std::vector<Triple> curves;
-  for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) curves.push_back(cie_xyz(nm));
+  for (int nm = kFirstCie_nm; nm <= kLastCie_nm; ++nm) curves.push_back(cie_xyz(nm));
   return curves;
 }
 
 std::vector<Triple> camera(std::string_view name) {
-  const std::vector<Row> rows = rows_of(sensors_csv, std::string(name) + ',');
+  const std::vector<CsvRow> rows = rows_of(sensors_csv, std::string(name) + ',');
   std::vector<Triple> curves;
-  for (int nm = kFirst_nm; nm <= kLast_nm; ++nm)
+  for (int nm = kFirstCie_nm; nm <= kLastCie_nm; ++nm)
     curves.push_back({linear_at(rows.at(0), nm), linear_at(rows.at(1), nm), linear_at(rows.at(2), nm)});
   return curves;
 }
 
 /// Returns the sensor's response to light that a surface reflects; without `reflectance` it is white.
-Triple responses(const std::vector<Triple>& curves, const Spectrum& illuminant, const Row* reflectance = nullptr) {
+Triple responses(const std::vector<Triple>& curves, const Spectrum& illuminant, const CsvRow* reflectance = nullptr) {
   Triple sum{};
   for (size_t i = 0; i < curves.size(); ++i) {
-    const int nm = kFirst_nm + int(i);
+    const int nm = kFirstCie_nm + int(i);
     const double light = double(illuminant.at(float(nm))) * (reflectance ? linear_at(*reflectance, nm) : 1);
     for (size_t c = 0; c < 3; ++c) sum[c] += curves[i][c] * light;
   }
@@ -76,7 +76,7 @@ Matrix3 xyz_from_camera(const std::vector<Triple>& curves, const Spectrum& white
   const SpectrumPtr d65 = unit_d65();
   const double luminance = responses(eye, white)[1] / responses(eye, *d65)[1];
   Matrix3 squares, products;
-  for (const Row& patch : rows_of(training_patches_csv, "")) {
+  for (const CsvRow& patch : rows_of(training_patches_csv, "")) {
     const Triple seen = responses(curves, white, &patch), wanted = responses(eye, *d65, &patch);
     for (size_t i = 0; i < 3; ++i)
       for (size_t j = 0; j < 3; ++j) {
@@ -106,7 +106,7 @@ FilmSensor::FilmSensor(std::string_view name, double white_kelvin) {
 }
 
 Triple FilmSensor::at(double lambda_nm) const {
-  const double x = lambda_nm - kFirst_nm;
+  const double x = lambda_nm - kFirstCie_nm;
   if (!(x >= 0 && x <= double(curves_.size() - 1))) return {};
   const auto i = std::min(size_t(x), curves_.size() - 2);
   const double t = x - double(i);

@@ -192,7 +192,7 @@ ScaledReflectance fit_scaled(const ColorSpace& space, const Triple& rgb, const L
   const double largest = std::max({rgb[0], rgb[1], rgb[2]});
   for (double room = 2; room <= 64; room *= 2) {
     const double scale = room * largest;
-    const SigmoidFit fit = fit_reflectance(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
+    const SigmoidFit fit = fit_reflectance(space, Triple{rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
     if (fit.error * room <= kLargestFitError) return {fit.reflectance, scale};
   }
   fail(where, "{} is purer than any light can be", shown(space, rgb));

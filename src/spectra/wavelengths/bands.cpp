@@ -11,14 +11,13 @@
 namespace frond {
 namespace {
 
-constexpr Interval kAllowed_nm{300, 2500};
 constexpr size_t kMostBands = 10000;
 
-constexpr Param kParams[] = {
+constexpr Param kBandsParams[] = {
     {.name = "wavelengths",
      .kind = ParamKind::real,
      .unit = "nm",
-     .range = kAllowed_nm,
+     .range = kWavelengthRange_nm,
      .doc = "One band at each of these wavelengths.",
      .list = true},
     {.name = "responses",
@@ -30,7 +29,7 @@ constexpr Param kParams[] = {
     {.name = "ranges",
      .kind = ParamKind::real,
      .unit = "nm",
-     .range = kAllowed_nm,
+     .range = kWavelengthRange_nm,
      .doc = "Pairs of first and last wavelengths, one for each band: its response is 1 between them.",
      .list = true},
     {.name = "names",
@@ -43,13 +42,13 @@ constexpr Param kParams[] = {
      .kind = ParamKind::real,
      .default_value = 400.0,
      .unit = "nm",
-     .range = kAllowed_nm,
+     .range = kWavelengthRange_nm,
      .doc = "First of evenly spaced wavelengths, if no list is given."},
     {.name = "lambdamax",
      .kind = ParamKind::real,
      .default_value = 700.0,
      .unit = "nm",
-     .range = kAllowed_nm,
+     .range = kWavelengthRange_nm,
      .doc = "Last of the evenly spaced wavelengths; included if a step ends there."},
     {.name = "step",
      .kind = ParamKind::real,
@@ -217,15 +216,16 @@ class Bands final : public WavelengthStrategy {
         std::vector<ResponsePoint> response;
         for (const SpectrumPoint& point : band.points) response.push_back({point.lambda_nm, point.value});
         // Tables of whole sensors have thermal bands, and bands that the sensor of this name lacks.
-        if (of_file.size() > 1 && (response.empty() || !kAllowed_nm.contains(centroid_nm(response, where)))) {
+        if (of_file.size() > 1 && (response.empty() || !kWavelengthRange_nm.contains(centroid_nm(response, where)))) {
           left_out += fmt::format("{}{}", left_out.empty() ? "" : ", ", band.name);
           continue;
         }
         bands_.push_back({centroid_nm(response, where), response, band.name});
       }
       if (!left_out.empty())
-        p.warn("responses", fmt::format("{}: bands without a response from {:g} to {:g} nm are left out: {}",
-                                        file.filename().string(), kAllowed_nm.min, kAllowed_nm.max, left_out));
+        p.warn("responses",
+               fmt::format("{}: bands without a response from {:g} to {:g} nm are left out: {}",
+                           file.filename().string(), kWavelengthRange_nm.min, kWavelengthRange_nm.max, left_out));
     }
     set_names(p, "responses");
   }
@@ -289,7 +289,7 @@ class Bands final : public WavelengthStrategy {
 extern const WavelengthsInfo bands_wavelengths{
     {"wavelengths", "bands",
      "Bands at any wavelengths or with the responses of a sensor, from 300 to 2500 nm, as channels of an EXR file.",
-     "Imaging spectrometers", kParams},
+     "Imaging spectrometers", kBandsParams},
     [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Bands>(p); }};
 
 }  // namespace frond

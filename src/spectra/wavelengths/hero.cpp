@@ -10,18 +10,17 @@
 namespace frond {
 namespace {
 
-constexpr Interval kAllowed_nm{300, 2500};
 constexpr Param kMin{.name = "lambdamin",
                      .kind = ParamKind::real,
                      .default_value = 360.0,
                      .unit = "nm",
-                     .range = kAllowed_nm,
+                     .range = kWavelengthRange_nm,
                      .doc = "Shortest wavelength."};
 constexpr Param kMax{.name = "lambdamax",
                      .kind = ParamKind::real,
                      .default_value = 830.0,
                      .unit = "nm",
-                     .range = kAllowed_nm,
+                     .range = kWavelengthRange_nm,
                      .doc = "Longest wavelength; the film sees none beyond 830 nm."};
 constexpr Param kSensor{.name = "sensor",
                         .kind = ParamKind::string,
@@ -46,7 +45,7 @@ constexpr Param kUniform{.name = "uniform",
                          .kind = ParamKind::boolean,
                          .default_value = false,
                          .doc = "Sample all wavelengths with the same density; the scene's Film \"spectral\" sets it."};
-constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance, kFluorescence, kUniform};
+constexpr Param kHeroParams[] = {kMin, kMax, kSensor, kWhiteBalance, kFluorescence, kUniform};
 
 /// Density proportional to 1 / cosh^2(0.0072 (nm - 538)), close to the eye's response (Radziszewski et al. 2009); over
 /// 360 to 830 nm the constant factor is 0.0039398042. Its integral is a difference of tanh, which is inverted.
@@ -167,7 +166,7 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
 extern const WavelengthsInfo hero_wavelengths{
     {"wavelengths", "hero",
      "Four stratified wavelengths per path from the full spectrum, sampled by the eye's sensitivity.",
-     "Wilkie et al. 2014; density after Radziszewski et al. 2009", kParams},
+     "Wilkie et al. 2014; density after Radziszewski et al. 2009", kHeroParams},
     [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Hero>(p); }};
 
 }  // namespace frond

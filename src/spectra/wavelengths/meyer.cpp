@@ -6,7 +6,7 @@ namespace frond {
 namespace {
 
 constexpr std::string_view kWhites[] = {"published", "D65"};
-constexpr Param kParams[] = {
+constexpr Param kMeyerParams[] = {
     {.name = "white",
      .kind = ParamKind::string,
      .default_value = std::string_view("published"),
@@ -83,7 +83,7 @@ class Meyer final : public WavelengthStrategy {
 
 extern const WavelengthsInfo meyer_wavelengths{
     {"wavelengths", "meyer", "456, 491, 558 and 631 nm: a quadrature of what the eye's opponent channels see.",
-     "Meyer 1988, Wavelength Selection for Synthetic Image Generation", kParams},
+     "Meyer 1988, Wavelength Selection for Synthetic Image Generation", kMeyerParams},
     [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Meyer>(p); }};
 
 }  // namespace frond

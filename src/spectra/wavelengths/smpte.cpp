@@ -9,7 +9,7 @@ namespace {
 constexpr Param wavelength(std::string_view name, double nm, std::string_view doc) {
   return {.name = name, .kind = ParamKind::real, .default_value = nm, .unit = "nm", .range = kCieRange_nm, .doc = doc};
 }
-constexpr Param kParams[] = {
+constexpr Param kSmpteParams[] = {
     wavelength("red", 608, "Wavelength of the red channel."),
     wavelength("green", 551, "Wavelength of the green channel."),
     wavelength(
@@ -62,7 +62,7 @@ class Smpte final : public WavelengthStrategy {
 
 extern const WavelengthsInfo smpte_wavelengths{
     {"wavelengths", "smpte", "608, 551 and 455 nm, one for each channel of linear SMPTE-C.",
-     "Baranoski and Rokne: dominant wavelengths of the SMPTE-C primaries", kParams},
+     "Baranoski and Rokne: dominant wavelengths of the SMPTE-C primaries", kSmpteParams},
     [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Smpte>(p); }};
 
 }  // namespace frond

@@ -9,7 +9,7 @@ namespace {
 
 const double kLogUnshot = std::log(1e-4);
 constexpr double kSmallest = 1e-6, kLargest = 0.5;
-const double kFirstStep = std::log(1.1);
+const double kFirstLogStep = std::log(1.1);
 constexpr int kSmallSteps = 4, kMostTries = 16, kMostHalvings = 4;
 
 /// Logarithm of the ratio after a whole number of events, and the counts behind its error.
@@ -62,7 +62,7 @@ class Search {
   std::optional<double> next() const {
     if (low_ && high_) return interpolate_cutoff(*low_, *high_);
     if (halvings_left_ > 0) return std::sqrt(before_.cutoff * after_.cutoff);
-    const double step = std::copysign(std::ldexp(kFirstStep, std::max(0, steps_ - kSmallSteps)), before_.miss);
+    const double step = std::copysign(std::ldexp(kFirstLogStep, std::max(0, steps_ - kSmallSteps)), before_.miss);
     const double cutoff = std::clamp(std::exp(before_.log_cutoff + step), kSmallest, kLargest);
     return cutoff == before_.cutoff ? std::optional<double>() : cutoff;
   }

@@ -33,7 +33,7 @@ std::string figure(const ReportChart& chart) {
       html_text(chart.caption));
 }
 
-std::string figures(const std::vector<ReportChart>& charts) {
+std::string html_figures(const std::vector<ReportChart>& charts) {
   std::string html;
   for (const ReportChart& chart : charts) html += figure(chart);
   return html;
@@ -110,7 +110,7 @@ std::string page(const Comparison& c, const std::vector<ReportChart>& charts) {
                             {"verdict", html_text(verdict(c))},
                             {"setting", setting(c)},
                             {"values", values_note(c.channels)},
-                            {"charts", figures(charts)},
+                            {"charts", html_figures(charts)},
                             {"tables", tables_html(c)},
                             {"provenance", provenance(c)},
                             {"data", viewer_data(c)},
