@@ -197,7 +197,7 @@ def flux(scene, wavelengths: float | Sequence[float] | str = '450,550,670,800', 
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     sides: Light also enters through the sides of the box between the target and the bottom of the scene: for plants that stand alone. Shares remain relative to the light through the target, and may exceed 1.
-    paths: Number of light paths; at least 32 for each wavelength are traced. Default: 1e6.
+    paths: Number of light paths, rounded up to an even one; at least 32 for each wavelength are traced. Default: 1e6.
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0, up to 1.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, mesh, connected part of a mesh, triangle or material, one row each; the other tables are then in files beside that of csv: leaves-flux.csv beside leaves.csv. One of instance, mesh, part, triangle, material.

@@ -30,6 +30,7 @@ BsdfTable make_table(const ExportMaterial& material, const ExportRequest& reques
 
 /// Throws InputError for a table of more than 2^28 numbers, which is not intended.
 void check_table(const ExportRequest& request);
+/// Options of all table formats.
 inline constexpr ExportOption kTableOptions[] = {ExportOption::angles, ExportOption::views};
 
 /// Name and documentation of an axis or a quantity of the table.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/sampling.h"
+#include "core/math/vec.h"
 #include "instruments/beam.h"
 #include "instruments/bsdf_calls.h"
 

@@ -131,8 +131,11 @@ std::optional<BrfMeasurement> measure(const JobRun& run, RenderControl control, 
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
   const bool refines = run.args.given("rms"), compares = run.args.given("compare");
   const auto paths = uint64_t(run.args.count("paths"));
-  const RefineLimits limits{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
-                            uint64_t{1} << 32, run.args.real("rms"), true};
+  const RefineLimits limits{
+      .amount = std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
+      .most = uint64_t{1} << 32,
+      .target_error = run.args.real("rms"),
+      .predicts = true};
   if (run.args.given("merge")) return meter.read(merged_parts(run, meter, limits.amount).film, compares);
   RenderPart part = first_part(run, meter, resume_file);
   std::optional<Checkpointer> checkpointer;

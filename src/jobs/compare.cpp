@@ -85,7 +85,7 @@ struct Setting {
 constexpr Setting kQuick{128, 32, 128}, kFull{256, 256, 1024};
 
 /// Returns --target: a set of the paper by name, or three numbers. Throws InputError.
-std::array<double, 3> wanted_of(const Arguments& args) {
+std::array<double, 3> target_errors(const Arguments& args) {
   const std::string text = args.text("target");
   if (text == "front") return {0.009, 0.009, 0.012};
   if (text == "back") return {0.011, 0.014, 0.010};
@@ -176,7 +176,7 @@ Result compare_models(const JobRun& run) {
   Plan plan = plan_of(run, setting);
   Request request{.rms = args.numbers("rms"), .relative = args.flag("relative")};
   if (args.given("exposure")) request.exposure_stops = args.real("exposure");
-  if (args.given("target")) request.target = wanted_of(args);
+  if (args.given("target")) request.target = target_errors(args);
   const std::string output = args.text("output");
   std::list<PlannedOutput> report;
   if (!output.empty()) {

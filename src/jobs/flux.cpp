@@ -53,7 +53,8 @@ constexpr JobParam kFluxParams[] = {
         "Light also enters through the sides of the box between the target and the bottom of the scene: for plants "
         "that stand alone. Shares remain relative to the light through the target, and may exceed 1.",
         {.decides = true}),
-    JobParam("paths", count, "Number of light paths; at least 32 for each wavelength are traced.",
+    JobParam("paths", count,
+             "Number of light paths, rounded up to an even one; at least 32 for each wavelength are traced.",
              {.default_value = "1e6", .range = kCounts}),
     rms_param(
         "Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the "

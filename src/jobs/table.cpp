@@ -114,7 +114,7 @@ TableLeaf leaf_of(const JobRun& run) {
 }
 
 /// Returns --wavelengths in the given order. Throws InputError for duplicates.
-std::vector<double> table_wavelengths(const Arguments& args) {
+std::vector<double> wavelengths_in_order(const Arguments& args) {
   const auto nm = args.numbers("wavelengths");
   auto sorted = nm;
   std::ranges::sort(sorted);
@@ -152,7 +152,7 @@ Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
   const PluginInfo only_tissue{"the table of", leaf.model.name, "", "", leaf_params()};
   const Arguments& args = run.args;
   leaf::TableRequest request{.params = LeafParams(constant_params(only_tissue, leaf.text)).tissue(),
-                             .wavelengths_nm = table_wavelengths(args),
+                             .wavelengths_nm = wavelengths_in_order(args),
                              .theta_deg = table_angles(args),
                              .rays = int(args.count("rays")),
                              .nodes = int(args.count("nodes")),
@@ -173,7 +173,7 @@ Result make_shares_file(const JobRun& run, const TableLeaf& leaf) {
 /// Writes the mode table.
 Result make_modes_file(const JobRun& run, const Params& params) {
   const leaf::ModeTableRequest request{.params = LeafParams(params).tissue(),
-                                       .wavelengths_nm = table_wavelengths(run.args),
+                                       .wavelengths_nm = wavelengths_in_order(run.args),
                                        .tolerance = params.real("tolerance"),
                                        .nodes = int(run.args.count("nodes"))};
   const double start = cpu_seconds();
@@ -187,7 +187,7 @@ Result make_modes_file(const JobRun& run, const Params& params) {
 
 /// Writes a .leaf file for other programs (docs/file_formats.md).
 Result make_leaf_file(const JobRun& run, const Params& params) {
-  LeafFileRequest request{.wavelengths_nm = table_wavelengths(run.args),
+  LeafFileRequest request{.wavelengths_nm = wavelengths_in_order(run.args),
                           .tolerance = params.real("tolerance"),
                           .nodes = int(run.args.count("nodes"))};
   if (const auto depths = run.args.numbers("depths"); !depths.empty()) request.depths = {depths[0], depths[1]};

@@ -1,9 +1,9 @@
-
 #include "core/emission.h"
 #include "core/error.h"
 #include "core/light.h"
 #include "core/math/direction_map.h"
 #include "core/math/equal_area.h"
+#include "core/math/vec.h"
 #include "core/stop.h"
 #include "lights/light_image.h"
 #include "lights/light_params.h"

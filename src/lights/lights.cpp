@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "core/math/sampling.h"
+#include "core/math/vec.h"
 #include "core/world.h"
 #include "lights/light_image.h"
 #include "lights/light_params.h"

@@ -4,6 +4,7 @@
 #include "core/light.h"
 #include "core/math/direction_map.h"
 #include "core/math/sampling.h"
+#include "core/math/vec.h"
 #include "lights/hemisphere_table.h"
 #include "lights/light_params.h"
 #include "lights/sky_model.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 #include "lights/station.h"
 
 namespace frond {

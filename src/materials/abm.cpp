@@ -21,9 +21,6 @@ constexpr Param kOwnAbmParams[] = {
 // Without incident "reciprocal": a random walk cannot be symmetrised. leaf_solved can.
 const std::vector<Param> kAbm = without_reciprocal(with_leaf_params(kOwnAbmParams));
 
-// Walks run in double: cosines of grazing rays are small.
-Vec3 in_float(const Vec3d& w) { return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}; }
-
 /// A leaf at a hit, at the wavelengths of the path: a tissue for each active lane.
 struct LeafLanes {
   std::array<const Tissue*, kLanes> tissues{};
@@ -84,6 +81,7 @@ class AbmBsdf : public Bsdf {
   SampledSpectrum leaf_f(const Vec3& incident, const Vec3& leaving, RandomStream& rng) const {
     SampledSpectrum f;
     if (incident.z == 0 || std::abs(leaving.z) < kLeastCosine || lanes_.count == 0) return f;
+    // Walks run in double: cosines of grazing rays are small.
     const Vec3d from = normalize(to_double(incident)), to = normalize(to_double(leaving));
     const auto body = leaf::estimate_subsurface_f(lanes_.all(), lanes_.draw_hero(rng), from, to, absorption_, rng);
     for (size_t i = 0; i < lanes_.count; ++i)
@@ -122,7 +120,7 @@ class AbmBsdf : public Bsdf {
     const Vec2 disk = sample_disk(u);
     const leaf::SpectralWalkEnd end = leaf::walk(lanes_.all(), hero, normalize(to_double(incident)), absorption_,
                                                  {place - static_cast<float>(hero), disk.x, disk.y}, rng);
-    Scattered ray{in_float(end.wi), lobes_of(end.fate), {}};
+    Scattered ray{to_float(end.wi), lobes_of(end.fate), {}};
     if (std::abs(ray.direction.z) < kLeastCosine) return ray;
     for (size_t i = 0; i < lanes_.count; ++i) ray.weight[lanes_.lane[i]] = static_cast<float>(end.weight[i]);
     return ray;

@@ -115,12 +115,12 @@ class Hair final : public Material {
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    constexpr float kSmoothest = 0.01f, kRadians = kPi / 180;
+    constexpr float kSmoothest = 0.01f, kDegreeInRadians = kPi / 180;
     const FiberForm form{.offset = std::clamp(2 * hit.at.uv.y - 1, -1.f, 1.f),
                          .eta = eta_->evaluate(hit.at),
                          .beta_m = std::max(beta_m_->evaluate(hit.at), kSmoothest),
                          .beta_n = std::max(beta_n_->evaluate(hit.at), kSmoothest),
-                         .tilt_radians = alpha_->evaluate(hit.at) * kRadians};
+                         .tilt_radians = alpha_->evaluate(hit.at) * kDegreeInRadians};
     const SampledSpectrum mask = lane_mask(lambda), value = absorption_->evaluate(hit.at, lambda);
     return arena.make<HairBsdf>(form, is_color_ ? absorption_of_color(value, mask, form.beta_n) : value * mask, mask);
   }

@@ -27,6 +27,7 @@ double LeafFluorescence::f(const Vec3& wo, const Vec3& wi, double emission_nm, d
                            RandomStream& rng) const {
   const double scale = share(excitation_nm) * density(emission_nm, excitation_nm);
   if (scale == 0 || wo.z == 0 || wi.z == 0) return 0;
+  // Walks run in double: cosines of grazing rays are small.
   return scale * transfer(normalize(to_double(wo)), normalize(to_double(wi)), emission_nm, excitation_nm, rng);
 }
 

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr int kCells = 64;  // along each axis, as in pbrt-v4
+constexpr int kNanoVdbMajorantCells = 64;  // along each axis, as in pbrt-v4
 
 /// Coefficients are in 1/unit at density 1.
 constexpr Param kNanoVdb[] = {
@@ -112,7 +112,7 @@ class NanoVdb final : public Medium {
   Phase phase_;
   Temperature temperature_;
   float emission_scale_;
-  MajorantGrid majorants_{kCells};
+  MajorantGrid majorants_{kNanoVdbMajorantCells};
 };
 
 }  // namespace

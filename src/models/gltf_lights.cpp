@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 using std::numbers::pi;
 
 /// Adds a loss, and returns nothing.
-std::nullopt_t lost_light(GltfLosses& losses, const std::string& what) {
+std::nullopt_t report_lost(GltfLosses& losses, const std::string& what) {
   losses.add(what);
   return std::nullopt;
 }
@@ -23,7 +23,7 @@ std::optional<ImportedLight> gltf_light(const Json& document, const Json& node, 
   const Json *use = extension(node, "KHR_lights_punctual"), *all = extension(document, "KHR_lights_punctual");
   if (!use) return {};
   const Json* light = all ? element(*all, "lights", integer(*use, "light")) : nullptr;
-  if (!light) return lost_light(losses, "light that does not exist (KHR_lights_punctual)");
+  if (!light) return report_lost(losses, "light that does not exist (KHR_lights_punctual)");
   losses.check("light", *light);
   const std::string_view type = text(*light, "type");
   ImportedLight result;
@@ -32,7 +32,7 @@ std::optional<ImportedLight> gltf_light(const Json& document, const Json& node, 
   else if (type == "spot")
     result.type = ImportedLight::Type::spot;
   else if (type != "point")
-    return lost_light(losses, "light of an unknown type (KHR_lights_punctual)");
+    return report_lost(losses, "light of an unknown type (KHR_lights_punctual)");
   const auto color = numbers(*light, "color", {1, 1, 1});
   const double intensity = number(*light, "intensity", 1);
   for (size_t i = 0; i < 3; ++i) result.color[i] = std::max(color[i] * intensity, 0.);
@@ -49,7 +49,7 @@ std::optional<ImportedLight> gltf_light(const Json& document, const Json& node, 
 std::optional<ImportedCamera> gltf_camera(const Json& document, const Json& node, GltfLosses& losses) {
   if (!member(node, "camera")) return {};
   const Json* camera = element(document, "cameras", integer(node, "camera"));
-  if (!camera) return lost_light(losses, "camera that does not exist");
+  if (!camera) return report_lost(losses, "camera that does not exist");
   losses.check("camera", *camera);
   const bool is_orthographic = text(*camera, "type") == "orthographic";
   const char* const kind = is_orthographic ? "orthographic" : "perspective";
@@ -66,7 +66,7 @@ std::optional<ImportedCamera> gltf_camera(const Json& document, const Json& node
   const auto is_usable = [](double v) { return v > kLeast && v < kMost; };
   if (!std::ranges::all_of(result.half, is_usable) ||
       std::abs(std::log(result.half[0] / result.half[1])) > std::log(100))
-    return lost_light(losses, "camera without a usable field of view");
+    return report_lost(losses, "camera without a usable field of view");
   return result;
 }
 

@@ -355,7 +355,7 @@ FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {
   for (size_t i = 0; i < s.materials; ++i) {
     const MaterialDescription& material = s.loaded.description().materials[i];
     if (!s.scene().material(i)) continue;
-    m.materials.push_back({name_of(material), means(kAbsorbedBy + i)});
+    m.materials.push_back({material.shown_name(), means(kAbsorbedBy + i)});
   }
   if (!s.by_instance) return m;
   const size_t cells = 1 + kQuantitiesOfInstance * s.emissions;

@@ -93,7 +93,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   }
   if (!request.organs) return;
   std::vector<std::string> names;
-  for (const MaterialDescription& m : s.loaded.description().materials) names.push_back(name_of(m));
+  for (const MaterialDescription& m : s.loaded.description().materials) names.push_back(m.shown_name());
   s.organs = std::make_unique<Organs>(s.scene(), std::move(names), *request.organs);
   const double bytes = double(s.organs->size()) * double(s.organ_channels()) * OrganSums::kCellBytes;
   if (bytes > machine_memory())

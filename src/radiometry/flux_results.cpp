@@ -39,8 +39,9 @@ FluxMeasurement FluxMeter::read() const {
   measurement.has_lamps = has_lamps(s.scene().lights());
   const std::vector<double> areas = areas_of_materials(s.scene().geometry(), s.materials);
   for (const uint32_t m : s.reflectors) {
-    FluxMeasurement::OfMaterial one{name_of(s.loaded.description().materials[m]), shares(flux_quantity(m, kAbsorbed)),
-                                    shares(flux_quantity(m, kIncident)), shares(flux_quantity(m, kUncollided))};
+    FluxMeasurement::OfMaterial one{s.loaded.description().materials[m].shown_name(),
+                                    shares(flux_quantity(m, kAbsorbed)), shares(flux_quantity(m, kIncident)),
+                                    shares(flux_quantity(m, kUncollided))};
     one.is_hit = std::ranges::any_of(one.incident, [](const MeanError& share) { return share.mean > 0; });
     if (!one.is_hit)
       for (auto* of_material : {&one.absorbed, &one.incident, &one.uncollided})
@@ -86,7 +87,7 @@ EnergyBudget FluxMeter::read_energy() const {
          {all.energy * all.mean_nm / kPhotonEnergy, direct.energy * direct.mean_nm / kPhotonEnergy}});
   }
   for (const uint32_t m : s.reflectors)
-    budget.materials.push_back({name_of(s.loaded.description().materials[m]), shares(flux_quantity(m, kAbsorbed)),
+    budget.materials.push_back({s.loaded.description().materials[m].shown_name(), shares(flux_quantity(m, kAbsorbed)),
                                 shares(flux_quantity(m, kIncident))});
   if (!s.is_leaf.empty()) {
     const auto leaves = [&](FluxLeaves group) {

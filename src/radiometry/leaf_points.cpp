@@ -7,7 +7,6 @@
 
 #include "core/math/random.h"
 #include "core/stop.h"
-#include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
 #include "scene/leaf_models.h"
 
@@ -39,7 +38,7 @@ std::vector<uint8_t> counted_materials(const SceneDescription& description, cons
                                        const Registry& registry) {
   std::vector<uint8_t> flags = leaf_flags(description, registry);
   std::vector<std::string_view> known;
-  for (const MaterialDescription& m : description.materials) known.push_back(name_of(m));
+  for (const MaterialDescription& m : description.materials) known.push_back(m.shown_name());
   if (!names.empty()) {
     std::ranges::fill(flags, 0);
     for (const std::string& name : names) {

@@ -19,11 +19,6 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description, bool fluorescence = false);
 
-/// Returns the name of a material in results: that of MakeNamedMaterial, or its plug-in's.
-inline const std::string& name_of(const MaterialDescription& material) {
-  return material.name.empty() ? material.plugin.name : material.name;
-}
-
 /// Throws InputError at a material with a BSSRDF, whose light paths of flux do not follow.
 void refuse_subsurface(const LoadedScene& loaded);
 

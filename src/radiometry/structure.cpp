@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/math/random.h"
+#include "core/math/vec.h"
 #include "core/stop.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/leaf_points.h"

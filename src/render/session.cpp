@@ -105,7 +105,7 @@ void add_matrices(const SceneSettings& description, const Scene& scene, ImageFor
 void name_materials(const SceneSettings& description, ImageFormat& image) {
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
-    image.attributes[fmt::format("frond:material:{}", i + 1)] = m.name.empty() ? m.plugin.name : m.name;
+    image.attributes[fmt::format("frond:material:{}", i + 1)] = m.shown_name();
   }
 }
 

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/math/vec.h"
 #include "report/patch_charts.h"
 #include "report/polar_map.h"
 
@@ -29,7 +30,7 @@ ColorScale scale_of(const std::vector<LabelledPatches>& measurements, bool logar
 /// Draws a hemisphere seen from the light's side, with the light from the left. If the back is lit, azimuths are
 /// mirrored.
 void add_patches(const PolarMap& map, const ColorScale& scale, const GoniophotometerMeasurement& r, bool reflected) {
-  const double handed = r.beam.theta_deg <= 90 ? std::numbers::pi / 180 : -std::numbers::pi / 180;
+  const double handed = r.beam.theta_deg <= 90 ? kDegree : -kDegree;
   for (size_t i = 0; i < r.sphere.size(); ++i) {
     const Patch p = r.sphere.patch(i);
     if (r.is_reflected(p) != reflected) continue;

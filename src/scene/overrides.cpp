@@ -58,7 +58,7 @@ std::vector<size_t> swapped_materials(const SceneSettings& description, const Ma
   std::vector<size_t> found;
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
-    names.push_back(m.name.empty() ? m.plugin.name : m.name);
+    names.push_back(m.shown_name());
     if (m.name == swap.from || m.plugin.name == swap.from) found.push_back(i);
   }
   if (found.empty())

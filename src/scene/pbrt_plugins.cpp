@@ -26,7 +26,7 @@ struct StandIn {
 constexpr std::string_view kRandomized[] = {"pixelsamples", "seed", "randomization"};
 constexpr std::string_view kPlain[] = {"pixelsamples", "seed"};
 constexpr std::string_view kStratified[] = {"xsamples", "ysamples", "jitter", "seed"};
-constexpr StandIn kOtherSamplers[] = {
+constexpr StandIn kPbrtSamplers[] = {
     {"zsobol", "lattice", "", kRandomized}, {"paddedsobol", "lattice", "", kRandomized},
     {"halton", "lattice", "", kRandomized}, {"sobol", "lattice", "", kRandomized},
     {"pmj02bn", "lattice", "", kPlain},     {"stratified", "lattice", "", kStratified}};
@@ -47,7 +47,7 @@ constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"function", "path", "", {}}};
 /// Integrators that compute another image: their replacement causes a warning.
 constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
-constexpr StandIn kOtherCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};
+constexpr StandIn kPbrtCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
 
 /// Materials of pbrt-v3 and older.
@@ -223,13 +223,13 @@ void translate_pbrt_plugins(SceneDescription& description, const Registry& regis
   problems.attempt([&] {
     if (d.sampler.name == "stratified" && !registry.samplers.find("stratified")) count_strata(d.sampler);
   });
-  translator.translate("Sampler", registry.samplers, kOtherSamplers, kOldSamplers, d.sampler);
+  translator.translate("Sampler", registry.samplers, kPbrtSamplers, kOldSamplers, d.sampler);
   // Shadow rays of volpath pass through material "interface", shadow rays of path do not. volpath is pbrt's default.
   const bool sees_through_interfaces =
       !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
   translate_integrator(registry, translator, log, d);
   const bool is_realistic = d.camera.name == "realistic";
-  if (translator.translate("Camera", registry.cameras, kOtherCameras, kOldCameras, d.camera) && is_realistic)
+  if (translator.translate("Camera", registry.cameras, kPbrtCameras, kOldCameras, d.camera) && is_realistic)
     problems.attempt([&] { set_field_of_view(d.camera, d.film); });
   translator.translate("Film", registry.films, {}, kOldFilms, d.film);
   for (MaterialDescription& m : d.materials)

@@ -8,32 +8,32 @@ namespace {
 using leaf::find_specimen;
 using leaf::TissueModel;
 
-constexpr double kNm = 551, kSolver = 1e-5, kTable = 3e-4;
+constexpr double kIncidenceNm = 551, kSolver = 1e-5, kTable = 3e-4;
 
 void add_angles(Theme& theme, std::string name, std::string_view specimen, const std::vector<double>& theta_deg) {
   const leaf::TissueParams& params = find_specimen(specimen)->params;
   const TissueModel model(params);
-  const leaf::Tissue tissue = model.at(kNm);
+  const leaf::Tissue tissue = model.at(kIncidenceNm);
   const Lit lit = solved_finely(tissue, theta_deg);
   Row& row = theme.add(fmt::format("{}, {}", specimen, name), fmt::format("exact; solver within {}, table within {}",
                                                                           rounded_up(kSolver), rounded_up(kTable)));
   compare_tissue_methods(row, tissue, lit, kSolver);
-  compare_material_methods(row, {params, kNm}, lit, kTable);
-  compare_solved_leaf(row, solved_specimen({params, kNm}), lit);
+  compare_material_methods(row, {params, kIncidenceNm}, lit, kTable);
+  compare_solved_leaf(row, solved_specimen({params, kIncidenceNm}), lit);
 }
 
 /// Just above and just below the horizon everything is reflected at the surface.
 void add_crossing(Theme& theme, std::string_view specimen) {
   const leaf::TissueParams& params = find_specimen(specimen)->params;
   const TissueModel model(params);
-  const leaf::Tissue tissue = model.at(kNm);
+  const leaf::Tissue tissue = model.at(kIncidenceNm);
   const std::vector<double> crossing{90 - 1e-9, 90, 90 + 1e-9};
   const Lit lit{crossing, std::vector<leaf::Shares>(crossing.size(), {1, 0, 0})};
   Row& row = theme.add(fmt::format("{}, 90 - 1e-9, 90 and 90 + 1e-9", specimen),
                        "continuous: everything is reflected at the surface; solver within 1e-9, table within 5e-6");
   compare_tissue_methods(row, tissue, lit, 1e-9);
-  compare_material_methods(row, {params, kNm}, lit, 5e-6);
-  compare_solved_leaf(row, solved_specimen({params, kNm}), lit);
+  compare_material_methods(row, {params, kIncidenceNm}, lit, 5e-6);
+  compare_solved_leaf(row, solved_specimen({params, kIncidenceNm}), lit);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ struct Indices {
   double cuticle, mesophyll, air_space = 1, wall = 1.3;
 };
 
-const std::vector<double> kAngles{5, 40, 60, 88, 130};
+const std::vector<double> kIndexAngles{5, 40, 60, 88, 130};
 
 void add_indices(Theme& theme, const leaf::Specimen& specimen, const Indices& indices, double depth, double bound) {
   const auto& [name, n_c, n_m, n_air, n_a] = indices;
@@ -24,7 +24,7 @@ void add_indices(Theme& theme, const leaf::Specimen& specimen, const Indices& in
   for (double& d : tissue.optical_depth) d = d > 0 ? depth : 0;
   Row& row = theme.add(fmt::format("{}, {}, depth {:g}", specimen.name, name, depth),
                        fmt::format("exact; solver within {}", rounded_up(bound)));
-  compare_tissue_methods(row, tissue, solved_finely(tissue, kAngles), bound);
+  compare_tissue_methods(row, tissue, solved_finely(tissue, kIndexAngles), bound);
 }
 
 /// Equal indices without absorption: R = 0, T = 1.
@@ -34,7 +34,7 @@ void add_equal(Theme& theme, const leaf::Specimen& specimen) {
   tissue.n.fill(1);
   tissue.optical_depth = {};
   Row& row = theme.add(fmt::format("{}, all indices 1, no absorption", specimen.name), "R = 0, T = 1");
-  compare_tissue_methods(row, tissue, {kAngles, std::vector<leaf::Shares>(kAngles.size(), {0, 0, 1})}, 1e-12);
+  compare_tissue_methods(row, tissue, {kIndexAngles, std::vector<leaf::Shares>(kIndexAngles.size(), {0, 0, 1})}, 1e-12);
 }
 
 }  // namespace

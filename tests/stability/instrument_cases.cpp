@@ -12,12 +12,12 @@ namespace {
 using test::flag;
 using test::words;
 
-constexpr double kNm = 551;
+constexpr double kInstrumentNm = 551;
 
 /// Rays, angle and wavelength of a measurement.
 struct Request {
   int64_t rays = 1000;
-  double theta_deg = 30, lambda_nm = kNm;
+  double theta_deg = 30, lambda_nm = kInstrumentNm;
 };
 
 void read_shares(const Request& r) {
@@ -44,9 +44,9 @@ void add_patches(Theme& theme, int thetas, int phis, const std::string& part) {
 /// The detectors catch every ray: their f integrates to R and T.
 Cell whole_sphere(double theta_deg, int thetas, int phis, const leaf::Shares& truth) {
   constexpr int64_t kRays = 50000;
-  Specimen specimen("abm", {}, kNm);
-  const auto measurement =
-      measure_f({specimen.material(), {theta_deg, kNm}}, DetectorSphere(thetas, phis), kRays, specimen.pool());
+  Specimen specimen("abm", {}, kInstrumentNm);
+  const auto measurement = measure_f({specimen.material(), {theta_deg, kInstrumentNm}}, DetectorSphere(thetas, phis),
+                                     kRays, specimen.pool());
   Estimate reflected, transmitted;
   for (size_t i = 0; i < measurement.sphere.size(); ++i) {
     const Patch patch = measurement.sphere.patch(i);
@@ -85,9 +85,9 @@ void add_measurement(Theme& theme, std::string name, const Beam& beam, int theta
 void add_delta_lobe(Theme& theme) {
   const Parameters published{flag("surfacedirect", false), words("tablemethod", {"solve"})};
   const std::string part = "the material has a delta lobe";
-  Specimen specimen("leaf_simplified", published, kNm);
-  const auto measurement = measure_shares({specimen.material(), {30, kNm}}, {50000}, specimen.pool());
-  const leaf::Shares truth = truth_of({30, kNm});
+  Specimen specimen("leaf_simplified", published, kInstrumentNm);
+  const auto measurement = measure_shares({specimen.material(), {30, kInstrumentNm}}, {50000}, specimen.pool());
+  const leaf::Shares truth = truth_of({30, kInstrumentNm});
   Comparison comparison(1e-4);
   comparison.add("Rs", measurement.surface, truth.surface, 50000);
   comparison.add("Rd", measurement.subsurface, truth.subsurface, 50000);
@@ -95,7 +95,7 @@ void add_delta_lobe(Theme& theme) {
   theme.add("a delta lobe: leaf_simplified with \"surfacedirect\" false", "shares exact; f " + expect_refusal(part))
       .add(Method::spectrophotometer, comparison.cell())
       .add(Method::goniophotometer, refusal(part, [&] {
-             check_no_delta_lobe({specimen.material(), {30, kNm}});
+             check_no_delta_lobe({specimen.material(), {30, kInstrumentNm}});
            }));
 }
 
@@ -117,11 +117,11 @@ Theme instruments() {
   add_patches(theme, 19, 40, "an even number is needed");
   add_patches(theme, -2, 40, "a goniophotometer needs patches");
   add_patches(theme, 100000, 100000, "are more than 16000000");
-  add_measurement(theme, "2 x 1 patches", {30, kNm}, 2, 1);
-  add_measurement(theme, "400 x 800 patches, most of them empty", {30, kNm}, 400, 800);
-  add_measurement(theme, "at 0 degrees", {0, kNm}, 20, 40);
-  add_measurement(theme, "at 90 degrees, as the limit from the front", {90, kNm}, 20, 40);
-  add_measurement(theme, "at 180 degrees", {180, kNm}, 20, 40);
+  add_measurement(theme, "2 x 1 patches", {30, kInstrumentNm}, 2, 1);
+  add_measurement(theme, "400 x 800 patches, most of them empty", {30, kInstrumentNm}, 400, 800);
+  add_measurement(theme, "at 0 degrees", {0, kInstrumentNm}, 20, 40);
+  add_measurement(theme, "at 90 degrees, as the limit from the front", {90, kInstrumentNm}, 20, 40);
+  add_measurement(theme, "at 180 degrees", {180, kInstrumentNm}, 20, 40);
   add_delta_lobe(theme);
   return theme;
 }

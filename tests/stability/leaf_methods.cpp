@@ -14,12 +14,12 @@ using leaf::Tissue;
 
 namespace {
 
-constexpr int kWalks = 5000, kBatchedWalks = 50000;
+constexpr int kMethodWalks = 5000, kBatchedWalks = 50000;
 
 Cell walked(const Tissue& tissue, const Lit& lit, Absorption absorption) {
   Comparison comparison;
   for (size_t i = 0; i < lit.theta_deg.size(); ++i)
-    add_shares(comparison, walk_many(tissue, lit.theta_deg[i], absorption, kWalks), lit.truth[i]);
+    add_shares(comparison, walk_many(tissue, lit.theta_deg[i], absorption, kMethodWalks), lit.truth[i]);
   return comparison.cell();
 }
 

@@ -10,8 +10,8 @@ using test::goniometer_text;
 using test::GoniometerAngles;
 using test::words;
 
-constexpr std::string_view kHead = "incidence_deg,wavelength_nm,theta_deg,phi_deg,f_per_sr\n";
-constexpr double kNm = 551;
+constexpr std::string_view kGoniometerHead = "incidence_deg,wavelength_nm,theta_deg,phi_deg,f_per_sr\n";
+constexpr double kMeasuredNm = 551;
 
 /// R and T of a table whose f is constant on each side.
 struct Constant {
@@ -41,13 +41,13 @@ class Files {
     theme_.add(std::move(name), expect_refusal(part))
         .add(Method::measured,
              refusal(
-                 part, [&] { Specimen("measured", {words("filename", {file})}, kNm); }, folder_.name_of("")));
+                 part, [&] { Specimen("measured", {words("filename", {file})}, kMeasuredNm); }, folder_.name_of("")));
   }
 
  private:
   static void add(Comparison& comparison, const std::string& file, double theta, Constant expected) {
     try {
-      Specimen specimen("measured", {words("filename", {file})}, kNm);
+      Specimen specimen("measured", {words("filename", {file})}, kMeasuredNm);
       const leaf::Shares shares = integrate_shares(specimen, theta);
       comparison.add("R", shares.subsurface, expected.reflected);
       comparison.add("T", shares.transmitted, expected.transmitted);
@@ -71,22 +71,22 @@ class Files {
 void add_accepted(Files& files) {
   const std::vector<double> all{0, 30, 60, 89.9, 90.1, 120, 180}, thetas{0, 30, 60, 89.9, 90.1, 120, 180};
   const Constant c{0.3, 0.2};
-  files.holds("both sides, directions to the horizon", {all, {kNm}, thetas, {0, 90, 180, 270}}, c, c);
-  files.holds("one incidence, one direction on each side", {{8}, {kNm}, {45, 135}, {0}}, c, c);
-  files.holds("light at 90 degrees", {{90}, {kNm}, {45, 135}, {0, 180}}, c, c);
-  files.holds("azimuths from -1e9 to 1e9 degrees", {{8}, {kNm}, {45, 135}, {-1e9, 0, 1e9 + 100}}, c, c);
-  files.holds("R + T = 1", {all, {kNm}, thetas, {0, 120, 240}}, {0.4, 0.6}, {0.4, 0.6});
-  files.holds("R + T = 2: scaled, with a warning", {all, {kNm}, thetas, {0}}, {1.5, 0.5}, {0.75, 0.25});
-  files.holds("f of 1e6: scaled, with a warning", {all, {kNm}, thetas, {0}}, {3e6, 1e6}, {0.75, 0.25});
-  files.holds("f of 1e-30", {all, {kNm}, thetas, {0}}, {1e-30, 1e-30}, {0, 0});
-  files.holds("f below 0: counts as 0, with a warning", {all, {kNm}, thetas, {0}}, {-0.1, 0.3}, {0, 0.3});
-  files.holds("f = 0", {all, {kNm}, thetas, {0}}, {0, 0}, {0, 0});
+  files.holds("both sides, directions to the horizon", {all, {kMeasuredNm}, thetas, {0, 90, 180, 270}}, c, c);
+  files.holds("one incidence, one direction on each side", {{8}, {kMeasuredNm}, {45, 135}, {0}}, c, c);
+  files.holds("light at 90 degrees", {{90}, {kMeasuredNm}, {45, 135}, {0, 180}}, c, c);
+  files.holds("azimuths from -1e9 to 1e9 degrees", {{8}, {kMeasuredNm}, {45, 135}, {-1e9, 0, 1e9 + 100}}, c, c);
+  files.holds("R + T = 1", {all, {kMeasuredNm}, thetas, {0, 120, 240}}, {0.4, 0.6}, {0.4, 0.6});
+  files.holds("R + T = 2: scaled, with a warning", {all, {kMeasuredNm}, thetas, {0}}, {1.5, 0.5}, {0.75, 0.25});
+  files.holds("f of 1e6: scaled, with a warning", {all, {kMeasuredNm}, thetas, {0}}, {3e6, 1e6}, {0.75, 0.25});
+  files.holds("f of 1e-30", {all, {kMeasuredNm}, thetas, {0}}, {1e-30, 1e-30}, {0, 0});
+  files.holds("f below 0: counts as 0, with a warning", {all, {kMeasuredNm}, thetas, {0}}, {-0.1, 0.3}, {0, 0.3});
+  files.holds("f = 0", {all, {kMeasuredNm}, thetas, {0}}, {0, 0}, {0, 0});
 }
 
 void add_refused(Files& files) {
-  const auto row = [](std::string_view rows) { return std::string(kHead) + std::string(rows); };
+  const auto row = [](std::string_view rows) { return std::string(kGoniometerHead) + std::string(rows); };
   files.refuses("an empty file", "", "neither a tensor file nor a goniometer table");
-  files.refuses("only the header", kHead, "there are no rows of numbers");
+  files.refuses("only the header", kGoniometerHead, "there are no rows of numbers");
   files.refuses("a missing column", "incidence_deg,wavelength_nm,theta_deg,f_per_sr\n",
                 "there is no column \"phi_deg\"");
   files.refuses("a row too short", row("8,551,10,0\n"), "4 fields, but the file has 5 columns");
@@ -108,7 +108,7 @@ void add_tensor(Theme& theme) {
       Comparison comparison;
       Specimen specimen("measured",
                         {words("filename", {fmt::format("{}/tests/pbrt_reference/{}.bsdf", FROND_SOURCE_DIR, name)})},
-                        kNm);
+                        kMeasuredNm);
       const Vec3 wo = toward_in_float(theta);
       RandomStream rng(1);
       double sum = 0;

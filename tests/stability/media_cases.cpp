@@ -11,9 +11,9 @@ namespace {
 using test::channel_mean;
 using test::render_text;
 
-const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
-constexpr int kSamples = 256;
-constexpr int64_t kPaths = 64 * kSamples;
+const std::string kMediaSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
+constexpr int kMediaSamples = 256;
+constexpr int64_t kMediaPaths = 64 * kMediaSamples;
 
 /// A camera that looks down from z = 3 on a point of the plane z = 0.
 std::string looking_down(const std::string& world) {
@@ -64,12 +64,12 @@ std::string ball_of(const std::string& medium) {
 
 /// Mean radiance against `truth`, in each channel.
 Cell radiance(const std::string& world, double truth) {
-  const Film film = render_text(looking_down(world), {.samples = kSamples});
+  const Film film = render_text(looking_down(world), {.samples = kMediaSamples});
   Comparison comparison(2e-4);
   comparison.require(film.not_finite() == 0, "a sample is no number");
   for (size_t c = 0; c < 3; ++c) {
     const auto [mean, error] = channel_mean(film, c);
-    comparison.add("radiance", Estimate{mean, error * error}, truth, kPaths);
+    comparison.add("radiance", Estimate{mean, error * error}, truth, kMediaPaths);
   }
   return comparison.cell();
 }
@@ -97,13 +97,13 @@ Theme media() {
     for (const double g : {-0.99, 0.0, 0.99}) {
       if (sigma != 1 && g != 0) continue;
       Row& row = theme.add(fmt::format("no absorption, sigma_s {:g}, g {:g}", sigma, g), "radiance 1");
-      for (const Type& type : kTypes) row.add(type.method, radiance(kSky + ball_of(type.with(0, sigma, g)), 1));
+      for (const Type& type : kTypes) row.add(type.method, radiance(kMediaSky + ball_of(type.with(0, sigma, g)), 1));
     }
   for (const double sigma : {1e-6, 1.0, 3.0, 1e30}) {
     Row& row = theme.add(fmt::format("no scattering, sigma_a {:g}", sigma), "radiance exp(-t)");
     for (const Type& type : kTypes)
       if (const double depth = depth_of(type.method); depth > 0)
-        row.add(type.method, radiance(kSky + ball_of(type.with(sigma, 0, 0)), std::exp(-sigma * depth)));
+        row.add(type.method, radiance(kMediaSky + ball_of(type.with(sigma, 0, 0)), std::exp(-sigma * depth)));
   }
   const std::string lit_plane =
       "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-D65\"\n"
@@ -120,13 +120,14 @@ Theme media() {
   }
   theme.add("a grid of zeros", "radiance 1")
       .add(Method::uniform_grid,
-           radiance(kSky + ball_of(fmt::format("\"string type\" \"uniformgrid\" \"float density\" 0 {}", kBox)), 1));
+           radiance(kMediaSky + ball_of(fmt::format("\"string type\" \"uniformgrid\" \"float density\" 0 {}", kBox)),
+                    1));
   theme.add("density 1e6 in one cell of a million, beside the ray", "radiance 1").add(Method::uniform_grid, [] {
     std::string values;
     for (int i = 0; i < 100 * 100 * 100; ++i) values += i == 0 ? "1e6 " : "0 ";
-    return radiance(kSky + ball_of(fmt::format("\"string type\" \"uniformgrid\" \"integer nx\" 100 \"integer ny\" "
-                                               "100 \"integer nz\" 100 \"float density\" [{}] {}",
-                                               values, kBox)),
+    return radiance(kMediaSky + ball_of(fmt::format("\"string type\" \"uniformgrid\" \"integer nx\" 100 \"integer ny\" "
+                                                    "100 \"integer nz\" 100 \"float density\" [{}] {}",
+                                                    values, kBox)),
                     1);
   }());
   for (const auto& [medium, part] :

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include "tests/stability/cases.h"
 #include "tests/stability/comparison.h"
@@ -11,7 +10,6 @@ namespace {
 using test::channel_mean;
 using test::render_text;
 
-constexpr double kDegree = std::numbers::pi / 180;
 const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
 
 std::string triple(double x, double y, double z) { return fmt::format("{:.9g} {:.9g} {:.9g}", x, y, z); }
@@ -81,28 +79,28 @@ Estimate estimate_of(const Film& film, size_t channel) {
   return {mean, error * error};
 }
 
-constexpr int kSamples = 64;
-constexpr int64_t kPaths = 64 * kSamples;
+constexpr int kSceneSamples = 64;
+constexpr int64_t kScenePaths = 64 * kSceneSamples;
 
 Cell furnace(const Leaf& leaf, bool direct) {
   const Sheet sheet{.material = leaf.material + " \"float mesophyllfraction\" 0",
                     .integrator = fmt::format("\"integer maxdepth\" 2 \"bool sampledirect\" {}", direct)};
-  const Film film = render_text(sheet.text(), {.samples = kSamples});
+  const Film film = render_text(sheet.text(), {.samples = kSceneSamples});
   Comparison comparison(2e-4);
   comparison.require(film.not_finite() == 0, "a sample is no number");
-  for (size_t c = 0; c < 3; ++c) comparison.add("radiance", estimate_of(film, c), 1, kPaths);
+  for (size_t c = 0; c < 3; ++c) comparison.add("radiance", estimate_of(film, c), 1, kScenePaths);
   return comparison.cell();
 }
 
 /// Shading normals tilted by an angle must not increase the light above the sky's.
 Cell bent(const Leaf& leaf, double lean_deg) {
   const Sheet sheet{.material = leaf.material + " \"float mesophyllfraction\" 0", .normals = leaning(lean_deg)};
-  const Film film = render_text(sheet.text(), {.samples = kSamples});
+  const Film film = render_text(sheet.text(), {.samples = kSceneSamples});
   Comparison comparison;
   comparison.require(film.not_finite() == 0, "a sample is no number");
   for (size_t c = 0; c < 3; ++c) {
     const Estimate e = estimate_of(film, c);
-    comparison.require(e.mean > 0 && e.mean <= 1 + kMostStandardErrors * e.standard_error() + 10.0 / kPaths,
+    comparison.require(e.mean > 0 && e.mean <= 1 + kMostStandardErrors * e.standard_error() + 10.0 / kScenePaths,
                        fmt::format("the radiance is {:.3g}", e.mean));
   }
   return comparison.cell();
@@ -114,7 +112,7 @@ Film render_at(const Leaf& leaf, double place) {
                     .half_width = 4096,
                     .place = place,
                     .more = "Shape \"disk\" \"float height\" -512 \"float radius\" 9000\n"};
-  return render_text(sheet.text(), {.samples = 4 * kSamples});
+  return render_text(sheet.text(), {.samples = 4 * kSceneSamples});
 }
 
 Cell far_away(const Leaf& leaf, double place) {
@@ -123,7 +121,7 @@ Cell far_away(const Leaf& leaf, double place) {
   comparison.require(far.not_finite() == 0, "a sample is no number");
   for (size_t c = 0; c < 3; ++c) {
     const Estimate a = estimate_of(near, c), b = estimate_of(far, c);
-    comparison.add("radiance", Estimate{b.mean, a.variance + b.variance}, a.mean, 4 * kPaths);
+    comparison.add("radiance", Estimate{b.mean, a.variance + b.variance}, a.mean, 4 * kScenePaths);
   }
   return comparison.cell();
 }

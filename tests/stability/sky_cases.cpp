@@ -15,8 +15,7 @@
 namespace frond::stability {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNm = 550;
+constexpr double kSkyNm = 550;
 
 /// A sky, and the irradiance of a horizontal plane at 550 nm by SPECTRL2.
 struct Case {
@@ -27,7 +26,7 @@ struct Case {
 
 double horizontal(const Atmosphere& air) {
   const ClearSkyIrradiance e = spectrl2(air);
-  const auto i = size_t(std::ranges::find(e.nm, kNm) - e.nm.begin());
+  const auto i = size_t(std::ranges::find(e.nm, kSkyNm) - e.nm.begin());
   return e.direct_normal[i] * std::cos(air.sun_zenith_deg * kDegree) + e.diffuse[i];
 }
 

@@ -8,8 +8,6 @@
 namespace frond::stability {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 /// A direction; theta is measured from the normal of the side `below` names.
 struct Direction {
   double theta_deg, azimuth;

@@ -18,7 +18,7 @@ using test::words;
 
 namespace {
 
-constexpr int kSamples = 4000, kTableWalks = 1000;
+constexpr int kInstrumentSamples = 4000, kTableWalks = 1000;
 constexpr int64_t kInstrumentRays = 50000;
 
 Fate fate_of(const Vec3& wo, const BsdfSample& sample) {
@@ -36,7 +36,8 @@ Parameters words_of(const LeafInScene& leaf) { return with(words_for(leaf.leaf),
 Cell sampled(Specimen& specimen, const Lit& lit) {
   Comparison comparison;
   for (size_t i = 0; i < lit.theta_deg.size(); ++i)
-    add_shares(comparison, sample_many(specimen.bsdf(), toward_in_float(lit.theta_deg[i]), kSamples), lit.truth[i]);
+    add_shares(comparison, sample_many(specimen.bsdf(), toward_in_float(lit.theta_deg[i]), kInstrumentSamples),
+               lit.truth[i]);
   return comparison.cell();
 }
 

@@ -9,7 +9,7 @@
 namespace frond::stability {
 namespace {
 
-constexpr int kSamples = 256;
+constexpr int kSubsurfaceSamples = 256;
 
 /// A plane under a sky of radiance 1, seen from above.
 std::string plane(std::string_view integrator, const std::string& params) {
@@ -41,12 +41,12 @@ struct Grey {
 };
 
 Cell radiance(std::string_view integrator, const std::string& params, double truth) {
-  const Film film = test::render_text(plane(integrator, params), {.samples = kSamples});
+  const Film film = test::render_text(plane(integrator, params), {.samples = kSubsurfaceSamples});
   Comparison comparison(2e-3);
   comparison.require(film.not_finite() == 0, "a sample is no number");
   for (size_t c = 0; c < 3; ++c) {
     const auto [mean, error] = test::channel_mean(film, c);
-    comparison.add("radiance", Estimate{mean, error * error}, truth, int64_t{64} * kSamples);
+    comparison.add("radiance", Estimate{mean, error * error}, truth, int64_t{64} * kSubsurfaceSamples);
   }
   return comparison.cell();
 }

@@ -9,14 +9,14 @@ using leaf::Shares;
 using test::flag;
 using test::words;
 
-constexpr std::string_view kHead = "theta_deg,wavelength_nm,Rs,Rd,T\n";
+constexpr std::string_view kTableHead = "theta_deg,wavelength_nm,Rs,Rd,T\n";
 
 class Files {
  public:
   explicit Files(Theme& theme) : theme_(theme) {}
 
   void refuses(std::string name, std::string_view rows, const std::string& part, double nm = 551) {
-    refuses_text(std::move(name), std::string(kHead) + std::string(rows), part, nm);
+    refuses_text(std::move(name), std::string(kTableHead) + std::string(rows), part, nm);
   }
   void refuses_text(std::string name, std::string_view text, const std::string& part, double nm = 551) {
     refuses_file(std::move(name), folder_.write("t.csv", text).string(), part, nm);
@@ -30,7 +30,7 @@ class Files {
   /// Adds a case of an accepted file whose shares at the angles of `lit` must equal `lit`.
   void holds(std::string name, std::string expected, std::string_view rows, const Lit& lit, double nm = 551) {
     Comparison comparison(2e-4);
-    const std::string file = folder_.write("t.csv", std::string(kHead) + std::string(rows)).string();
+    const std::string file = folder_.write("t.csv", std::string(kTableHead) + std::string(rows)).string();
     try {
       Specimen specimen = open(file, nm);
       for (size_t i = 0; i < lit.theta_deg.size(); ++i)

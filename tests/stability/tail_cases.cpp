@@ -8,7 +8,7 @@
 namespace frond::stability {
 namespace {
 
-constexpr double kNm = 551;
+constexpr double kTailNm = 551;
 
 /// Sample weights (factors of a path's throughput) for paths that arrive uniformly from all directions.
 struct Weights {
@@ -49,7 +49,7 @@ Cell unbounded(const Weights& w) {
 }
 
 Specimen leaf(std::string_view material, const std::string& specimen, const std::string& incident) {
-  return {material, {test::words("specimen", {specimen}), test::words("incident", {incident})}, kNm};
+  return {material, {test::words("specimen", {specimen}), test::words("incident", {incident})}, kTailNm};
 }
 
 }  // namespace

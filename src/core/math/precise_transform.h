@@ -50,7 +50,9 @@ class PreciseTransform {
   Rows rows_ = kIdentity, inverse_ = kIdentity;
 };
 
+/// Column `j` of a matrix: an axis, or with 3 the translation.
 inline Vec3d column(const Transform::RowsDouble& m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
+/// The same entries in double precision.
 Transform::RowsDouble to_double(const Transform::Rows& m);
 /// The matrix that applies `b` first, then `a`.
 Transform::RowsDouble multiply(const Transform::RowsDouble& a, const Transform::RowsDouble& b);

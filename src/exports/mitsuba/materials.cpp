@@ -68,12 +68,12 @@ void Materials::write_plain(Xml& xml, const ParsedPlugin& plugin, const std::str
   } else if (row != std::end(kRows)) {
     has_image = row->write(context_, xml, source);
   } else {
-    const std::string& name = context_.description.materials[index].name;
+    const std::string& name = context_.description.materials[index].shown_name();
     if (context_.report_unsupported(
             "materials", plugin.where,
             fmt::format("material \"{}\" has no equivalent in Mitsuba (--swap \"{}=diffuse,reflectance=0.5\" "
                         "replaces it)",
-                        plugin.name, name.empty() ? plugin.name : name),
+                        plugin.name, name),
             kStandIn))
       has_image = write_stand_in(context_, xml, source);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace frond {
+
 double ImageError::bias() const { return bias_squared.root(); }
 
 double ImageError::bias_upper() const { return bias_squared.root_at(kZ95); }

@@ -11,6 +11,7 @@ namespace frond {
 struct MeanError {
   double mean = 0, standard_error = 0;
 };
+
 /// Returns a value times a number without an error.
 inline MeanError scaled(const MeanError& v, double factor) { return {v.mean * factor, v.standard_error * factor}; }
 /// Returns v / by for independent errors; not a number unless `by` is above 0.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "instruments/errors/statistics.h"
 #include "jobs/flux/flux_tables.h"
 
 namespace frond {

@@ -1,5 +1,6 @@
 #include "jobs/flux/flux_energy.h"
 
+#include "core/wavelengths.h"
 #include "leaf/tissue/constants.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"

@@ -1,9 +1,9 @@
 #include "jobs/support/fit_directions.h"
 
 #include <map>
-#include <numbers>
 #include <set>
 
+#include "core/math/vec.h"
 #include "instruments/beam.h"
 #include "materials/measured/goniometer_rows.h"
 #include "render/measured_material.h"
@@ -20,9 +20,9 @@ struct Sums {
 
 /// Unit vector at an angle from the normal and an azimuth from x, in the frame of a flat leaf.
 Vec3 direction(double theta_deg, double phi_deg) {
-  const double degree = std::numbers::pi / 180, sine = std::sin(theta_deg * degree);
+  const double sine = std::sin(theta_deg * kDegree);
   return to_float(
-      Vec3d{sine * std::cos(phi_deg * degree), sine * std::sin(phi_deg * degree), std::cos(theta_deg * degree)});
+      Vec3d{sine * std::cos(phi_deg * kDegree), sine * std::sin(phi_deg * kDegree), std::cos(theta_deg * kDegree)});
 }
 
 }  // namespace

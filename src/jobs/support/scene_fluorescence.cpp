@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "instruments/errors/statistics.h"
 #include "jobs/support/radiometry.h"
 #include "jobs/support/time_limit.h"
 #include "radiometry/radiometer_scene.h"

@@ -24,6 +24,9 @@ namespace frond {
 struct MaterialDescription {
   std::string name;     ///< name of MakeNamedMaterial; empty for `Material`
   ParsedPlugin plugin;  ///< for MakeNamedMaterial its name is the value of "string type"
+
+  /// The name in results: that of MakeNamedMaterial, or the plug-in's.
+  const std::string& shown_name() const { return name.empty() ? plugin.name : name; }
 };
 
 /// A texture of the scene file.

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/fluorescence.h"
+#include "core/wavelengths.h"
 #include "spectra/response_file.h"
 #include "spectra/wavelengths/registry.h"
 #include "spectra/wavelengths/response_sampler.h"

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "core/fluorescence.h"
+#include "core/wavelengths.h"
 #include "spectra/cie.h"
 #include "spectra/color/color_space.h"
 #include "spectra/color/film_sensor.h"

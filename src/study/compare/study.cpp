@@ -27,8 +27,6 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
       {at(s.crop.x0), at(s.crop.x0) + scaled(s.crop.width()), at(s.crop.y0), at(s.crop.y0) + scaled(s.crop.height())}));
 }
 
-std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
-
 /// Candidates replace open leaves, so their requests are removed.
 void remove_error_requests(SceneSettings& description, const Registry& registry) {
   for (MaterialDescription& m : description.materials)
@@ -39,7 +37,7 @@ void remove_error_requests(SceneSettings& description, const Registry& registry)
 std::vector<std::string> leaf_names(const SceneSettings& description, const Registry& registry) {
   std::vector<std::string> names;
   for (const size_t i : leaf_materials(description, registry))
-    if (const std::string name = name_of(description.materials[i]); std::ranges::find(names, name) == names.end())
+    if (const std::string name = description.materials[i].shown_name(); std::ranges::find(names, name) == names.end())
       names.push_back(name);
   return names;
 }
