@@ -10,8 +10,8 @@ namespace frond {
 
 /// Data of instances for Embree's callbacks.
 struct GeometryInstances {
-  /// Up to this number of instances, inverse maps are stored (64 MB); beyond it they are computed for each ray.
-  static constexpr size_t kMostKept = 1 << 20;
+  /// Up to this number of instances, inverse maps are stored (1 GB); beyond it they are computed for each ray.
+  static constexpr size_t kMostKept = 1 << 24;
 
   const Instances& instances;
   std::vector<const GeometryObject*> objects;  ///< by row; a single element applies to all rows
