@@ -113,7 +113,10 @@ benchmark_packages=(mitsuba==3.9.1 bpy==5.0.1 pyradiance==1.3.1 less3d==3.0.1 fl
 eradiate_packages=("eradiate[kernel]==1.2.0" nanobind-backend==1.0.0 pandas matplotlib==3.11.2)
 
 # Without these values ccache does not cache sources that include a precompiled header.
-export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros"
+case ",${CCACHE_SLOPPINESS:-}," in
+  *,pch_defines,time_macros,*) ;; # set by a script that calls this one: another value would compile everything again
+  *) export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros" ;;
+esac
 
 configure() {
   local options=("${configure_options[@]}")

@@ -189,7 +189,7 @@ def functions(ways):
 
 # Stages of a path. A stack belongs to the first stage with a function that matches; the rest of a render has no stage.
 STAGES = [
-    ("surface at a hit", r"^Geometry::describe$|^place$"),
+    ("surface at a hit", r"^Geometry::compute_hit$|^place$"),
     ("traversal", r"^Scene::(intersect|occluded)|^rtc(Intersect|Occluded)"),
     ("film", r"^(FilmTile|Film|Splat\w*)::"),
     ("camera rays and sampler", r"Camera::|Sampler::|^block_"),

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -136,11 +137,17 @@ class StacksTest(unittest.TestCase):
         start, trace = ("_start", "C and C++ library"), ("PathTracer::trace", "integrators")
         hit, embree = ("Scene::intersect", "scene"), ("Embree", "Embree")
         count = stacks.stages({(start, trace): 1, (start, trace, hit, ("rtcIntersect1", "Embree"), embree): 2,
-                               (start, trace, hit, ("Geometry::describe", "scene")): 4,
+                               (start, trace, hit, ("Geometry::compute_hit", "scene")): 4,
                                (start, trace, ("Diffuse::evaluate", "materials")): 8, ((CUT, CUT), embree): 16,
                                (start, ("Geometry::build", "scene"), embree): 32})
         self.assertEqual({stage: n for stage, n in count.items() if n},
                          {"integrator and render loop": 1, "traversal": 18, "surface at a hit": 4, "materials": 8, None: 32})
+
+    def test_functions_of_stages_exist(self):
+        source = "".join(path.read_text(encoding="utf-8") for path in (stacks.tools.ROOT / "src").rglob("*.cpp"))
+        named = [name for _, pattern in stacks.STAGES for name in re.findall(r"\^(\w+(?:::\w+)?)\$", pattern)]
+        self.assertEqual([name for name in named if f" {name}(" not in source], [])
+        self.assertGreater(len(named), 1)
 
     def test_recursion_counts_once_below(self):
         _, below = stacks.shares({(("a", "scene"), ("E", "Embree"), ("b", "scene"), ("E", "Embree")): 5})
