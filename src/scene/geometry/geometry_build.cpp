@@ -110,7 +110,10 @@ void Geometry::attach(GeometryObject& object) {
     const size_t rows = instances.table->size();
     if (rows <= GeometryInstances::kMostKept && instances.motions.empty()) {
       set.inverses.reserve(rows);
-      for (size_t row = 0; row < rows; ++row) set.inverses.push_back(instances.table->map(row).inverse());
+      for (size_t row = 0; row < rows; ++row) {
+        if (row % 65536 == 0) check_stop();
+        set.inverses.push_back(instances.table->map(row).inverse());
+      }
     }
     if (instances.is_placed) set.from_placement = instances.placement.inverse();
     const auto as_many = [&](const GeometryObject* o) { return o->ids == set.objects.front()->ids; };
