@@ -185,17 +185,19 @@ class LatticeSampler final : public SamplerBase {
     Lattice numbers{joint != 0 ? 0 : uint32_t(key >> 32) | 1u, joint != 0 ? joint * kReorder : 1, 0, uint32_t(shifts),
                     uint32_t(shifts >> 32)};
     numbers.generator_y = numbers.generator_x * kSecond;
-    if (key & 1) std::swap(numbers.generator_x, numbers.generator_y);
+    const bool is_pair = dimension != uint32_t(Dimension::wavelengths);
+    if ((key & 1) && is_pair) std::swap(numbers.generator_x, numbers.generator_y);
     if (key & 2) numbers.generator_y = -numbers.generator_y;
     return numbers;
   }
 
   /// Factors of the dimensions, by Dimension, that form one lattice together; 0 for all others, which shuffle the
   /// samples. From searches for a small variance of random half-spaces of two and three pairs, and where the pair of
-  /// the light or of the direction is drawn twice for each sample (measurements/run lattice).
+  /// the light or of the direction is drawn twice for each sample; that of the wavelengths, for half-spaces whose
+  /// colour varies with them (measurements/run lattice).
   static constexpr uint32_t factor(uint32_t dimension) {
-    constexpr uint32_t kFilm = 1, kLens = 409, kTime = 2491, kOnLight = 887, kDirection = 6595;
-    constexpr uint32_t kFactors[] = {0, kFilm, kLens, kTime, 0, kOnLight, 0, kDirection};
+    constexpr uint32_t kWavelengths = 1077, kFilm = 1, kLens = 409, kTime = 2491, kOnLight = 887, kDirection = 6595;
+    constexpr uint32_t kFactors[] = {kWavelengths, kFilm, kLens, kTime, 0, kOnLight, 0, kDirection};
     static_assert(std::size(kFactors) == size_t(Dimension::count));
     return dimension < std::size(kFactors) ? kFactors[dimension] : 0;
   }

@@ -66,6 +66,8 @@ class Curves final : public AnalyticShape {
     const Vec3 x{r[0][0], r[1][0], r[2][0]}, y{r[0][1], r[1][1], r[2][1]}, z{r[0][2], r[1][2], r[2][2]};
     // Geometric mean of the scale factors along the axes: the cube root of the determinant.
     scale_ = std::cbrt(std::abs(dot(cross(x, y), z)));
+    chords_.reserve(count());
+    for (unsigned i = 0; i < count(); ++i) chords_.push_back(chord_of(piece_of(i)));
   }
 
   unsigned count() const override { return unsigned(segments_.size()) * kPieces; }
@@ -87,9 +89,10 @@ class Curves final : public AnalyticShape {
 
   /// The curve is transformed to ray space, split recursively, and tested as line segments.
   std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const override {
-    const Piece piece = piece_of(primitive);
     const Vec3d o = precise_.inverse_point(frond::to_double(ray.o));
     const Vec3d d = precise_.inverse_vector(frond::to_double(ray.d));
+    if (chords_[primitive].is_far_from(o, d)) return {};
+    const Piece piece = piece_of(primitive);
     // Ray space with the ray along z and the curve roughly along x gives tight bounding boxes.
     const double ray_length = length(d);
     const Framed ray_space = Framed::along(d / ray_length, piece.curve[3] - piece.curve[0]);
@@ -164,6 +167,32 @@ class Curves final : public AnalyticShape {
     if (k > 0) piece.curve = second_part(split(piece.curve, piece.u0));
     if (k + 1 < kPieces) piece.curve = first_part(split(piece.curve, 1.0 / (kPieces - k)));
     return piece;
+  }
+
+  /// The line through the ends of a piece. Most rays that meet a piece's bounding box pass this line at more than
+  /// `radius`, which encloses the piece with its width.
+  struct Chord {
+    Vec3 from, along;
+    float radius;
+
+    /// Whether the line from `o` along `d` is further away than the radius; not if the lines are parallel.
+    bool is_far_from(const Vec3d& o, const Vec3d& d) const {
+      const Vec3d across = cross(d, frond::to_double(along));
+      const double volume = dot(frond::to_double(from) - o, across), r = double(radius);
+      return volume * volume > r * r * dot(across, across);
+    }
+  };
+  Chord chord_of(const Piece& piece) const {
+    const Cubicd& c = piece.curve;
+    const Vec3d along = c[3] - c[0], direction = normalize_any(along);
+    double away = 0, size = 0;
+    for (const Vec3d& p : c) {
+      away = std::max(away, length(cross(direction, p - c[0])));
+      size = std::max({size, length(p), length(p - c[0])});
+    }
+    constexpr double kRounding = 1e-6;  // of the numbers of a chord, which are floats
+    const double wide = std::max(width(piece.segment, piece.u0), width(piece.segment, piece.u1)) / 2;
+    return {to_float(c[0]), to_float(along), float(away + wide + kRounding * (size + wide))};
   }
 
   /// Width at a parameter of a segment, interpolated along the whole chain.
@@ -273,6 +302,7 @@ class Curves final : public AnalyticShape {
   }
 
   std::vector<Cubic> segments_;  ///< in object space
+  std::vector<Chord> chords_;    ///< of the pieces; in object space
   std::vector<Vec3> normals_;    ///< of a ribbon, at the ends of segments; unit
   Vec2 widths_;
   CurveKind kind_;

@@ -131,6 +131,7 @@ class PluginKinds : public CommandTest {
 Camera "orthographic" "float screenwindow" [ -0.9 0.9 -0.9 0.9 ]
 Film "square"
 Sampler "independent" "integer pixelsamples" 64
+PixelFilter "box"
 WorldBegin
 )" + world)
                                   .string();
@@ -170,13 +171,14 @@ AttributeEnd
 }
 
 TEST_F(PluginKinds, TheExamplesRender) {
-  // I cos^m of the angle from the axis, m = 1 at 120 degrees: E = I cos(angle)^4 / h^2 of a point below.
+  // I cos^m of the angle from the axis, m = 1 at 120 degrees: E = I cos(angle)^4 / h^2 of a point below. cos(angle)^4
+  // is 1 - 2 r^2 / h^2 at a distance r from the axis, whose mean square is 2 (0.9^2) / 3.
   const double lit = render(R"(LightSource "led" "point3 from" [ 0 0 20 ] "point3 to" [ 0 0 0 ] "float scale" 400
 Material "diffuse" "rgb reflectance" [ 1 1 1 ]
 Shape "tile"
 )",
                             {"kinds", "led"});
-  EXPECT_NEAR(lit, 1 / std::numbers::pi, 0.005);
+  EXPECT_NEAR(lit, (1 - 2 * 0.54 / (20 * 20)) / std::numbers::pi, 0.001);
   // A blade that lies flat, 1.6 by 1.6 at its base, hides 2/3 of 1.6^2 of the window's 1.8^2.
   const double seen = render(R"(LightSource "infinite"
 Material "diffuse" "rgb reflectance" [ 0 0 0 ]

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "core/math/random.h"
 #include "spectra/analytic.h"
@@ -71,25 +74,38 @@ TEST(Hero, DensityIsTheKnownOneOverTheVisible) {
 TEST(Hero, DensityIntegratesToOneAndMatchesItsSamples) {
   for (const auto& [min, max] : {Interval{360, 830}, Interval{400, 700}, Interval{360, 2500}, Interval{900, 2500}}) {
     const auto hero = make_hero(min, max);
-    // Wavelengths of evenly spaced u ascend from end to end: a Riemann sum of the density over them is its integral.
-    const int n = 20000;
-    double previous = min, integral = 0;
-    for (int k = 1; k < n; ++k) {
-      const SampledWavelengths lambda = hero->sample(static_cast<float>(k) / n);
+    // First lanes of evenly spaced u, in order: a Riemann sum of the density over them is its integral.
+    constexpr int kCount = 1 << 14;
+    std::map<float, float> density;
+    for (int k = 0; k < kCount; ++k) {
+      const SampledWavelengths lambda = hero->sample((float(k) + 0.5f) / kCount);
       ASSERT_TRUE(hero->range_nm().contains(double(lambda.nm[0])));
-      integral += double(lambda.pdf[0]) * (double(lambda.nm[0]) - previous);
-      previous = double(lambda.nm[0]);
+      density[lambda.nm[0]] = lambda.pdf[0];
     }
+    double previous = min, integral = 0;
+    for (const auto& [nm, pdf] : density) integral += double(pdf) * (double(nm) - std::exchange(previous, double(nm)));
     EXPECT_NEAR(integral, 1, 3e-3) << min << " to " << max;
     EXPECT_NEAR(double(hero->sample(0).nm[0]), min, 1e-3);
   }
 }
 
-TEST(Hero, LanesAreTurnedByQuarters) {
+/// n paths have 4n wavelengths, one in each of 4n equal intervals of the density's integral; their first lanes are in n
+/// equal intervals.
+TEST(Hero, FewPathsCoverTheSpectrum) {
   const auto hero = make("hero");
-  const SampledWavelengths a = hero->sample(0.1f), b = hero->sample(0.6f);
-  for (size_t i = 0; i < kLanes; ++i) EXPECT_NEAR(double(a.nm[i]), double(b.nm[(i + 2) % 4]), 1e-3);
-  EXPECT_EQ(a.count, 4);
+  const auto reduced = [](double nm) { return std::tanh(0.0072 * (nm - 538)); };
+  const auto below = [&](float nm) { return (reduced(double(nm)) - reduced(360)) / (reduced(830) - reduced(360)); };
+  for (const int n : {1, 4, 16, 64, 256}) {
+    std::set<int> cells, first;
+    for (int i = 0; i < n; ++i) {
+      const SampledWavelengths lambda = hero->sample((float(i) + 0.5f) / float(n));
+      EXPECT_EQ(lambda.count, 4);
+      for (const float nm : lambda.nm) cells.insert(int(below(nm) * 4 * n));
+      first.insert(int(below(lambda.nm[0]) * n));
+    }
+    EXPECT_EQ(cells.size(), size_t(4 * n));
+    EXPECT_EQ(first.size(), size_t(n));
+  }
   EXPECT_TRUE(hero->fixed_nm().empty());
 }
 

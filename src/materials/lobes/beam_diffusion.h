@@ -29,11 +29,18 @@ class BeamDiffusion {
 
  private:
   friend class BeamProfile;
+  static constexpr size_t kSteps = 1024;  ///< of the inverse
+
+  /// Albedo by the root of the spline of the reflectance.
+  float find_albedo(float reflectance) const;
+
   std::vector<float> albedos_, radii_;
   std::vector<float> reflectance_;  ///< by albedo; may exceed 1
   std::vector<float> farthest_;     ///< by albedo: radius within which 0.999 of the light leaves
   std::vector<float> density_;      ///< by albedo and radius: 2 pi r times the profile
   std::vector<float> within_;       ///< its integral from 0
+  std::vector<float> steps_;        ///< of the reflectance, equal
+  std::vector<float> inverse_;      ///< albedo, by these steps
 };
 
 /// Profile of one single-scattering albedo: four rows of the table, interpolated by a spline. Where the method returns

@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -93,8 +94,17 @@ std::optional<FilmSensor> sensor_of(const Params& p) {
   return FilmSensor(name, white_kelvin);
 }
 
-/// Hero wavelength spectral sampling (Wilkie et al. 2014): four wavelengths at equal steps of the density's integral,
-/// rotated by one random number. The film's channels are CIE XYZ.
+/// Quarter of the spectrum in which the first lane of a path with the number u lies: the sum of the digits of u in base
+/// 4, modulo 4. 4^n paths whose u are in 4^n equal intervals then have first lanes in 4^n equal intervals as well.
+uint32_t first_quarter(float u) {
+  constexpr uint32_t kLowDigitBits = 0x55555555;
+  const auto digits = static_cast<uint32_t>(double(u) * 0x1p32);
+  return uint32_t(std::popcount(digits & kLowDigitBits) + 2 * std::popcount(digits & ~kLowDigitBits)) % kLanes;
+}
+
+/// Hero wavelength spectral sampling (Wilkie et al. 2014): four wavelengths at equal steps of the density's integral.
+/// Their places in the quarters of the spectrum are u, so that n paths whose u are in n equal intervals have 4n
+/// different wavelengths. The film's channels are CIE XYZ.
 class Hero final : public WavelengthStrategy, public FluorescenceColors {
  public:
   explicit Hero(const Params& p)
@@ -112,17 +122,16 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
     if (is_uniform_) return uniform_sample(u);
     SampledWavelengths lambda;
     lambda.count = kLanes;
+    const uint32_t first = first_quarter(u);
     for (size_t i = 0; i < kLanes; ++i) {
-      double turned = double(u) + double(i) / kLanes;
-      turned -= turned < 1 ? 0 : 1;
-      const auto [nm, pdf] = density_.sample(turned);
+      const auto [nm, pdf] = density_.sample((double((first + i) % kLanes) + double(u)) / kLanes);
       lambda.nm[i] = static_cast<float>(nm);
       lambda.pdf[i] = static_cast<float>(pdf);
       lambda.active[i] = true;
     }
     return lambda;
   }
-  /// The first lane is where `u` is: it has the stratification of the sampler, which a lane drawn by a BSDF would lose.
+  /// The first lane has the stratification of the sampler, which a lane drawn by a BSDF would lose.
   SampledWavelengths sample_for_index(uint64_t, float u) const override {
     SampledWavelengths lambda = sample(u);
     lambda.hero = is_uniform_ ? int8_t(-1) : int8_t(0);
