@@ -3,13 +3,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/math/sampling.h"
 #include "integrators/excitation.h"
 #include "integrators/path_state.h"
 #include "radiometry/flux_sums.h"
 #include "radiometry/incident_light.h"
+#include "radiometry/lit_bands.h"
+#include "radiometry/path_pairs.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/ratio_sums.h"
 #include "radiometry/trace_blocks.h"
@@ -28,7 +33,7 @@ enum Quantity : size_t { kEmitted, kReabsorbed, kLeft, kUpward, kDownward, kAbso
 /// Quantities of an instance: the excitation, then these at each wavelength of emission.
 enum OfInstance : size_t { kEmittedThere, kLeftThere, kQuantitiesOfInstance };
 
-/// The mean of a quantity, which is NaN where only the matrices of a leaf are known.
+/// The mean of a quantity over pairs of paths, which is NaN where only the matrices of a leaf are known.
 MeanError mean_of(const Moment& moment, uint64_t paths) {
   return std::isnan(moment.sum) ? kUnknown : moment.mean(paths);
 }
@@ -67,6 +72,7 @@ struct FluorescenceFluxMeter::State {
   IncidentLight light;
   ExcitationSampler excitation;
   size_t materials, emissions;
+  uint64_t turns;  ///< turns_of(wavelengths of emission); each has strata of its own
   Moment excited = {};
   std::vector<Moment> moments = {};    ///< by quantity and wavelength of emission
   std::vector<RatioSums> escape = {};  ///< by wavelength of emission
@@ -88,25 +94,29 @@ class FluorescenceFluxMeter::Block {
         escape(state.emissions),
         seen(state.emissions),
         state_(state),
-        values_(state.quantities()) {}
+        members_{Path(state.quantities()), Path(state.quantities())} {}
 
-  /// Throws SurfaceError.
+  /// Traces pairs of paths, both of which begin in one stratum. Both numbers are even. Throws SurfaceError.
   void trace(uint64_t first, uint64_t count) {
     constexpr uint64_t kPolled = 16;  // paths
-    for (uint64_t i = first; i < first + count; ++i) {
+    const uint64_t seed = state_.scene().seed();
+    for (uint64_t i = first; i < first + count; i += 2) {
       if (i % kPolled == 0) check_stop();
-      RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
-      emission_ = state_.scene().wavelengths().sample_for_index(i, random.uniform());
-      std::ranges::fill(values_, SampledSpectrum());
-      excited_ = 0;
-      trace_path(hash_key(state_.scene().seed(), uint64_t{kKeys}, i), random);
-      add_path();
+      const uint64_t pair = i / 2, turn = pair % state_.turns;
+      const Stratum stratum = stratum_of(pair / state_.turns, hash_key(seed, uint64_t{kStrata}, turn));
+      emission_ = state_.scene().wavelengths().sample_for_index(pair, 0.5f);
+      for (uint64_t member = 0; member < members_.size(); ++member) {
+        RandomStream random(hash_key(seed, uint64_t{kStream}, i + member));
+        path_ = &members_[member];
+        path_->clear();
+        trace_path(stratum.sample(random), hash_key(seed, uint64_t{kKeys}, i + member), random);
+      }
+      add_pair();
     }
   }
   /// Adds to the sums of instances, which have no block of their own: once the block counts.
   void add_organs() {
-    for (const auto& [instance, quantity, share] : of_instances_)
-      state_.by_instance->add(instance, quantity, {share, share * share});
+    for (const OfInstance& o : of_instances_) state_.by_instance->add(o.instance, o.quantity, o.share);
     of_instances_ = {};
   }
 
@@ -117,17 +127,31 @@ class FluorescenceFluxMeter::Block {
 
  private:
   /// Uses of the scene's seed.
-  enum SeedUse : uint64_t { kStream = 0x666c756f, kKeys };
-  struct OfOneInstance {
+  enum SeedUse : uint64_t { kStream = 0x666c756f, kKeys, kStrata };
+
+  /// What one path brings.
+  struct Path {
+    explicit Path(size_t quantities) : values(quantities) {}
+    void clear() {
+      std::ranges::fill(values, SampledSpectrum());
+      excited = 0;
+      of_instances.clear();
+    }
+    std::vector<SampledSpectrum> values;  ///< by quantity
+    double excited = 0;
+    std::map<std::pair<uint64_t, size_t>, double> of_instances = {};  ///< by instance and quantity of it
+  };
+  struct OfInstance {
     uint64_t instance;
     size_t quantity;
-    double share;
+    Moment share;
   };
 
-  void trace_path(uint64_t key, RandomStream& random) {
+  /// `place`: uniform, for the place where the light begins.
+  void trace_path(const UnitPoint& place, uint64_t key, RandomStream& random) {
     const Target& t = state_.target;
     const SampledWavelengths lambda = state_.excitation.sample(random.uniform());
-    const auto light = state_.light.sample(Stratum().sample(random), random, lambda);
+    const auto light = state_.light.sample(place, random, lambda);
     if (!light) return;
     // Photons that the lanes stand for, relative to all incident ones.
     SampledSpectrum photons;
@@ -171,10 +195,10 @@ class FluorescenceFluxMeter::Block {
       absorbed += double(photons[e]) * absorbed_here;
     }
     const SampledSpectrum left = lit + opposite;
-    excited_ += absorbed;
-    values_[kEmitted] += emitted;
-    values_[kReabsorbed] += reabsorbed;
-    values_[kLeft] += left;
+    path_->excited += absorbed;
+    path_->values[kEmitted] += emitted;
+    path_->values[kReabsorbed] += reabsorbed;
+    path_->values[kLeft] += left;
     if (state_.by_instance && point.instance_id > 0) add_instance(point.instance_id, absorbed, emitted, left);
     const float same = sum(lit), both = sum(left);
     if (!(both > 0)) return;
@@ -205,8 +229,8 @@ class FluorescenceFluxMeter::Block {
     follow(
         ray, active, emitted, hash_key(key, uint64_t{kKeys}), random, emission_arena_,
         [&](const SurfacePoint& at, const Vec3&, const SampledSpectrum& before, const SampledSpectrum& after,
-            uint64_t) { values_[kAbsorbedBy + at.material_id] += SampledSpectrum(before.v - after.v); },
-        [&](bool is_upward, const SampledSpectrum& share) { values_[is_upward ? kUpward : kDownward] += share; });
+            uint64_t) { path_->values[kAbsorbedBy + at.material_id] += SampledSpectrum(before.v - after.v); },
+        [&](bool is_upward, const SampledSpectrum& share) { path_->values[is_upward ? kUpward : kDownward] += share; });
   }
 
   /// Follows light until it is absorbed or leaves the scene. Calls at_hit(point, toward, before, after, key) at each
@@ -242,32 +266,40 @@ class FluorescenceFluxMeter::Block {
 
   void add_instance(uint64_t instance, double excited_there, const SampledSpectrum& emitted,
                     const SampledSpectrum& left) {
-    if (!std::isnan(excited_there)) of_instances_.push_back({instance, 0, excited_there});
+    const auto add = [&](size_t quantity, double share) { path_->of_instances[{instance, quantity}] += share; };
+    if (!std::isnan(excited_there)) add(0, excited_there);
     for (int f = 0; f < emission_.count; ++f) {
       const size_t first = 1 + emission_.band[size_t(f)] * kQuantitiesOfInstance;
-      if (!std::isnan(emitted[f])) of_instances_.push_back({instance, first + kEmittedThere, double(emitted[f])});
-      of_instances_.push_back({instance, first + kLeftThere, double(left[f])});
+      if (!std::isnan(emitted[f])) add(first + kEmittedThere, double(emitted[f]));
+      add(first + kLeftThere, double(left[f]));
     }
   }
 
-  void add_path() {
-    excited.add(excited_);
+  /// Adds what both paths of a pair bring to all sums.
+  void add_pair() {
+    const auto& [a, b] = members_;
+    excited += PairShare{a.excited, b.excited}.moment();
     for (int f = 0; f < emission_.count; ++f) {
       const size_t at = emission_.band[size_t(f)];
-      ++seen[at];
-      for (size_t q = 0; q < values_.size(); ++q) moments[q * state_.emissions + at].add(double(values_[q][f]));
-      const auto left = double(values_[kLeft][f]);
-      if (left > 0) escape[at].add(double(values_[kUpward][f]) / left, left);
+      const auto of_pair = [&](size_t q) { return PairShare{double(a.values[q][f]), double(b.values[q][f])}; };
+      seen[at] += 2;
+      for (size_t q = 0; q < state_.quantities(); ++q) moments[q * state_.emissions + at] += of_pair(q).moment();
+      if (const double left = of_pair(kLeft).moment().sum; left > 0)
+        escape[at].add(of_pair(kUpward).moment().sum / left, left);
     }
+    std::map<std::pair<uint64_t, size_t>, PairShare> shares;
+    for (const auto& [key, share] : a.of_instances) shares[key].first = share;
+    for (const auto& [key, share] : b.of_instances) shares[key].second = share;
+    for (const auto& [key, share] : shares) of_instances_.push_back({key.first, key.second, share.moment()});
   }
 
   State& state_;
   Arena arena_, emission_arena_;
   StopPoll poll_;
-  SampledWavelengths emission_;          ///< of the current path
-  std::vector<SampledSpectrum> values_;  ///< of the current path, by quantity
-  double excited_ = 0;                   ///< of the current path
-  std::vector<OfOneInstance> of_instances_;
+  std::array<Path, 2> members_;  ///< of the current pair
+  Path* path_ = nullptr;         ///< current member
+  SampledWavelengths emission_;  ///< of the current pair
+  std::vector<OfInstance> of_instances_;
 };
 
 FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription description,
@@ -292,9 +324,10 @@ FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription 
   if (!(incident > 0)) fail({}, "the scene has no light from 400 to 750 nm, which excites fluorescence");
   ExcitationSampler excitation = excitation_of(by_material, *irradiance);
   IncidentLight light(scene, HorizontalIrradiance(loaded), excitation.sample(0.5f));
-  state_ =
-      std::make_unique<State>(State{std::move(loaded), target, std::move(by_material), std::move(irradiance), incident,
-                                    std::move(light), std::move(excitation), materials, request.emission_nm.size()});
+  const uint64_t turns = turns_of(scene.wavelengths());
+  state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(by_material), std::move(irradiance),
+                                         incident, std::move(light), std::move(excitation), materials,
+                                         request.emission_nm.size(), turns});
   state_->moments.resize(state_->quantities() * state_->emissions);
   state_->escape.resize(state_->emissions);
   state_->seen.resize(state_->emissions);
@@ -319,7 +352,7 @@ uint64_t FluorescenceFluxMeter::paths() const { return state_->paths; }
 void FluorescenceFluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control) {
   State& s = *state_;
   trace_blocks<Block>(
-      s.loaded, s.paths, paths, pool, control, [&s] { return std::make_unique<Block>(s); },
+      s.loaded, s.paths, paths + paths % 2, pool, control, [&s] { return std::make_unique<Block>(s); },
       [&s](const Block& block) {
         s.excited += block.excited;
         for (size_t i = 0; i < s.moments.size(); ++i) s.moments[i] += block.moments[i];

@@ -82,7 +82,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   s.reflectors = reflectors_of(s.scene());
   s.moments.resize(s.quantities() * s.channels.count());
   s.seen.resize(bands);
-  s.turns = s.wavelengths.turns();
+  s.turns = turns_of(s.scene().wavelengths());
   s.optics_nm = s.scene().wavelengths().range_nm();
   s.ranges_nm = std::move(ranges_nm);
   if (!s.is_leaf.empty()) {

@@ -9,7 +9,7 @@ namespace {
 
 /// Returns a mean of an organ; its error is NaN if no path was absorbed.
 MeanError organ_mean(const Moment& moment, uint64_t paths) {
-  MeanError mean = moment.mean_of_pairs(paths);
+  MeanError mean = moment.mean(paths);
   if (moment.sum == 0) mean.standard_error = NAN;
   return mean;
 }
@@ -23,7 +23,7 @@ FluxMeasurement FluxMeter::read() const {
     std::vector<MeanError> result;
     for (size_t band = 0; band < s.bands; ++band) {
       const ExactMoment& all = s.moments[quantity * s.channels.count() + s.channels.energy(band, kAllLight)];
-      result.push_back(all.value().mean_of_pairs(s.seen[band]));
+      result.push_back(all.value().mean(s.seen[band]));
     }
     return result;
   };
@@ -69,7 +69,7 @@ EnergyBudget FluxMeter::read_energy() const {
     for (size_t band = 0; band < s.bands; ++band) {
       const auto parts = [&](size_t first) {
         const auto mean = [&](LightPart part) {
-          return s.moments[quantity * s.channels.count() + first + part].value().mean_of_pairs(s.seen[band]);
+          return s.moments[quantity * s.channels.count() + first + part].value().mean(s.seen[band]);
         };
         return LightParts{mean(kAllLight), mean(kDirectLight), mean(kDiffuseLight)};
       };

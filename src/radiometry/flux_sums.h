@@ -98,22 +98,15 @@ class FluxShares {
   std::vector<OfOrgan> organs_;
 };
 
-/// Sum over paths, with a sum of squares: of the paths, or of the differences within pairs of paths.
+/// Sum over pairs of paths, with that of the squared differences within pairs, which estimate the variance without
+/// bias, however the strata differ.
 struct Moment {
   double sum = 0, square = 0;
-  void add(double x) { sum += x, square += x * x; }
   Moment& operator+=(const Moment& other) {
     sum += other.sum, square += other.square;
     return *this;
   }
   MeanError mean(uint64_t paths) const {
-    const auto n = double(paths);
-    if (paths == 0) return {};
-    const double mean = sum / n, variance = std::max(0.0, square / n - mean * mean);
-    return {mean, paths > 1 ? std::sqrt(variance / (n - 1)) : 0};
-  }
-  /// The same of pairs, whose differences estimate the variance without bias, however the strata differ.
-  MeanError mean_of_pairs(uint64_t paths) const {
     if (paths == 0) return {};
     return {sum / double(paths), std::sqrt(square) / double(paths)};
   }
@@ -121,7 +114,7 @@ struct Moment {
 
 /// Shares of the two paths of a pair, or factors on them.
 struct PairShare {
-  double first, second;
+  double first = 0, second = 0;
   PairShare operator*(const PairShare& b) const { return {first * b.first, second * b.second}; }
   PairShare operator*(double factor) const { return {first * factor, second * factor}; }
   bool is_zero() const { return first == 0 && second == 0; }
@@ -177,7 +170,7 @@ class ExactMoment {
 class OrganSums {
  public:
   OrganSums(uint64_t organs, size_t channels) : channels_(channels), cells_(organs * channels) {}
-  /// Adds what one path, or a pair of paths has brought.
+  /// Adds what a pair of paths has brought.
   void add(uint64_t organ, size_t channel, const Moment& share) {
     Cell& cell = cells_[(organ - 1) * channels_ + channel];
     add(cell.sum, share.sum);

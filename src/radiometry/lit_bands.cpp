@@ -85,9 +85,9 @@ LitBands::LitBands(const WavelengthStrategy& strategy, const HorizontalIrradianc
   }
 }
 
-uint64_t LitBands::turns() const {
-  const auto bands_of = [this](uint64_t index) {
-    const SampledWavelengths lambda = strategy_.sample_for_index(index, 0.5f);
+uint64_t turns_of(const WavelengthStrategy& strategy) {
+  const auto bands_of = [&](uint64_t index) {
+    const SampledWavelengths lambda = strategy.sample_for_index(index, 0.5f);
     std::vector<uint16_t> bands(lambda.band.begin(), lambda.band.begin() + lambda.count);
     std::ranges::sort(bands);
     return bands;

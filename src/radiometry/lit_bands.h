@@ -9,6 +9,9 @@
 
 namespace frond {
 
+/// Returns the number of successive samples after which their bands repeat.
+uint64_t turns_of(const WavelengthStrategy& strategy);
+
 /// Light of a band with a response: integrals over the wavelength, weighted by the response.
 struct BandLight {
   double energy = 0;   ///< irradiance; W/m^2 if the light's unit is W/(m^2 nm)
@@ -29,9 +32,6 @@ class LitBands {
   /// Returns the incident light of a band with a response, of all lights and of the direct light alone (is_direct).
   BandLight light(size_t band) const { return {samplers_[band].integral(), samplers_[band].centroid_nm()}; }
   const BandLight& direct_light(size_t band) const { return direct_[band]; }
-
-  /// Returns the number of successive samples after which their bands repeat.
-  uint64_t turns() const;
 
   /// As WavelengthStrategy::sample_for_index.
   SampledWavelengths sample_for_index(uint64_t index, float u) const {

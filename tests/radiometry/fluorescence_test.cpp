@@ -92,9 +92,12 @@ class SceneFluorescence : public ::testing::Test {
     session.render(meter.scene(), {0, samples}, part);
     return meter.read(part.film);
   }
-  FluorescenceFluxMeasurement flux(const std::string& world, uint64_t paths, int threads = 2) const {
+  FluorescenceFluxMeasurement flux(const std::string& world, uint64_t paths, int threads = 2,
+                                   const std::string& options = "") const {
     Session session(silent_log(), {threads, {}, {}});
-    FluorescenceFluxMeter meter(session, description(world), {.period = kPeriod, .emission_nm = kEmission});
+    FluorescenceFluxMeter meter(
+        session, description(world, options),
+        {.period = kPeriod, .emission_nm = kEmission, .by_instance = world.find("Object") != std::string::npos});
     meter.trace(paths, session.pool());
     return meter.read();
   }
@@ -217,6 +220,34 @@ TEST_F(SceneFluorescence, ResultsDoNotDependOnThreads) {
   const std::string world = kSky + kReplayed + gaps("leaf", 1) + gaps("leaf", 0.6);
   EXPECT_EQ(brf(world, {{0, 0}}, 2, 1).at(0, 0).mean, brf(world, {{0, 0}}, 2, 3).at(0, 0).mean);
   EXPECT_EQ(flux(world, 3000, 1).upward[0].mean, flux(world, 3000, 3).upward[0].mean);
+}
+
+// Pairs of paths begin in strata. False alarms, had the seeds not been fixed: 1e-4 for each of the 4 quantities, as the
+// mean square of z is 1 with a standard deviation of sqrt(2 / 39).
+TEST_F(SceneFluorescence, StatedErrorsAreThoseOfSeeds) {
+  constexpr int kSeeds = 40;
+  constexpr uint64_t kPaths = 6'400;  // an incomplete last run
+  const std::string world = kSun + kReplayed + "ObjectBegin \"o\"\n" + gaps("leaf", 1) +
+                            "ObjectEnd\nObjectInstance \"o\"\nTranslate 0 0 -0.4\nObjectInstance \"o\"\n";
+  std::array<std::array<double, kSeeds>, 4> values{};
+  std::array<double, 4> variance{};
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const FluorescenceFluxMeasurement m = flux(world, kPaths, 2, fmt::format("Option \"integer seed\" {}\n", seed + 1));
+    const std::array measured{m.left[0], m.upward[1], m.escape[0], m.instances[0].left[0]};
+    for (size_t q = 0; q < measured.size(); ++q) {
+      values[q][size_t(seed)] = measured[q].mean;
+      variance[q] += measured[q].standard_error * measured[q].standard_error / kSeeds;
+    }
+    // A leaf of 0.49 of the area, in paths that begin independently, has at least this variance.
+    const double relative = m.instances[0].left[0].standard_error / m.instances[0].left[0].mean;
+    EXPECT_LT(relative * relative * double(kPaths), 0.6 * (1 - 0.49) / 0.49);
+  }
+  for (size_t q = 0; q < values.size(); ++q) {
+    double mean = 0, squares = 0;
+    for (const double v : values[q]) mean += v / kSeeds;
+    for (const double v : values[q]) squares += (v - mean) * (v - mean) / (kSeeds - 1);
+    EXPECT_NEAR(squares / variance[q], 1, 3.9 * std::sqrt(2.0 / (kSeeds - 1))) << q;
+  }
 }
 
 /// Light that only excites, without any at the wavelengths of emission.
