@@ -27,7 +27,7 @@ CASES = {"film": ["film"], "film, light": ["film", "on_light"], "film, direction
          "film, blue": ["film", "wavelengths"], "film, light, blue": ["film", "on_light", "wavelengths"],
          "film, direction, blue": ["film", "direction", "wavelengths"]}
 WEIGHTS = {16: 1, 64: 2, 256: 2, 1024: 1}  # of numbers of points in the search
-BLUE = 0.58  # variation of the blue of four wavelengths at equal steps with the place of the first, nearly a cosine
+BLUE = 0.58  # standard deviation of the blue of four wavelengths at equal steps over their place in the steps, nearly a cosine
 random = numpy.random.default_rng(1)
 
 
@@ -61,6 +61,7 @@ def lattice(count, factors, twice=False, stride=1, on_spectrum=0):
     every `stride`-th sample are the first of them. `on_spectrum`: the factor of the wavelengths, if there are any."""
     total = 2 * count if twice else count * stride
     factors = factors if stride == 1 else [k * REORDER % total for k in factors]
+    assert not on_spectrum or (stride == 1 and not twice)
     by = (numpy.array([[k, k * SECOND] for k in factors]) * ([[2], [1]] if twice else 1)).ravel()
     if on_spectrum:
         by = numpy.append(by, on_spectrum)

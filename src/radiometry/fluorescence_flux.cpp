@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "core/math/sampling.h"
@@ -33,7 +32,11 @@ enum Quantity : size_t { kEmitted, kReabsorbed, kLeft, kUpward, kDownward, kAbso
 /// Quantities of an instance: the excitation, then these at each wavelength of emission.
 enum OfInstance : size_t { kEmittedThere, kLeftThere, kQuantitiesOfInstance };
 
-/// The mean of a quantity over pairs of paths, which is NaN where only the matrices of a leaf are known.
+/// Factor on emission in the sums of instances: squares of a path's share, a density of 1e-6 to 1e-3 1/nm, would be as
+/// small as the unit of the sums.
+constexpr double kEmissionScale = 0x1p7;
+
+/// The mean of a quantity from the sums of pairs. It is NaN where only the matrices of a leaf are known.
 MeanError mean_of(const Moment& moment, uint64_t paths) {
   return std::isnan(moment.sum) ? kUnknown : moment.mean(paths);
 }
@@ -116,7 +119,7 @@ class FluorescenceFluxMeter::Block {
   }
   /// Adds to the sums of instances, which have no block of their own: once the block counts.
   void add_organs() {
-    for (const OfInstance& o : of_instances_) state_.by_instance->add(o.instance, o.quantity, o.share);
+    for (const InstanceMoment& o : of_instances_) state_.by_instance->add(o.instance, o.quantity, o.moment);
     of_instances_ = {};
   }
 
@@ -129,22 +132,27 @@ class FluorescenceFluxMeter::Block {
   /// Uses of the scene's seed.
   enum SeedUse : uint64_t { kStream = 0x666c756f, kKeys, kStrata };
 
+  /// Of a quantity of an instance.
+  struct InstanceShare {
+    uint64_t instance;
+    size_t quantity;
+    PairShare share;
+  };
+  struct InstanceMoment {
+    uint64_t instance;
+    size_t quantity;
+    Moment moment;
+  };
+
   /// What one path brings.
   struct Path {
     explicit Path(size_t quantities) : values(quantities) {}
     void clear() {
       std::ranges::fill(values, SampledSpectrum());
       excited = 0;
-      of_instances.clear();
     }
     std::vector<SampledSpectrum> values;  ///< by quantity
     double excited = 0;
-    std::map<std::pair<uint64_t, size_t>, double> of_instances = {};  ///< by instance and quantity of it
-  };
-  struct OfInstance {
-    uint64_t instance;
-    size_t quantity;
-    Moment share;
   };
 
   /// `place`: uniform, for the place where the light begins.
@@ -266,12 +274,15 @@ class FluorescenceFluxMeter::Block {
 
   void add_instance(uint64_t instance, double excited_there, const SampledSpectrum& emitted,
                     const SampledSpectrum& left) {
-    const auto add = [&](size_t quantity, double share) { path_->of_instances[{instance, quantity}] += share; };
+    const size_t member = path_ == &members_[0] ? 0 : 1;
+    const auto add = [&](size_t quantity, double share) {
+      shares_.push_back({instance, quantity, member == 0 ? PairShare{share, 0} : PairShare{0, share}});
+    };
     if (!std::isnan(excited_there)) add(0, excited_there);
     for (int f = 0; f < emission_.count; ++f) {
       const size_t first = 1 + emission_.band[size_t(f)] * kQuantitiesOfInstance;
-      if (!std::isnan(emitted[f])) add(first + kEmittedThere, double(emitted[f]));
-      add(first + kLeftThere, double(left[f]));
+      if (!std::isnan(emitted[f])) add(first + kEmittedThere, double(emitted[f]) * kEmissionScale);
+      add(first + kLeftThere, double(left[f]) * kEmissionScale);
     }
   }
 
@@ -287,19 +298,31 @@ class FluorescenceFluxMeter::Block {
       if (const double left = of_pair(kLeft).moment().sum; left > 0)
         escape[at].add(of_pair(kUpward).moment().sum / left, left);
     }
-    std::map<std::pair<uint64_t, size_t>, PairShare> shares;
-    for (const auto& [key, share] : a.of_instances) shares[key].first = share;
-    for (const auto& [key, share] : b.of_instances) shares[key].second = share;
-    for (const auto& [key, share] : shares) of_instances_.push_back({key.first, key.second, share.moment()});
+    add_instances();
+  }
+
+  /// Adds up the shares of the pair's hits by instance and quantity.
+  void add_instances() {
+    const auto key = [](const InstanceShare& s) { return std::pair(s.instance, s.quantity); };
+    std::ranges::sort(shares_, {}, key);
+    for (size_t i = 0; i < shares_.size();) {
+      const InstanceShare& first = shares_[i];
+      PairShare sum;
+      for (; i < shares_.size() && key(shares_[i]) == key(first); ++i)
+        sum.first += shares_[i].share.first, sum.second += shares_[i].share.second;
+      of_instances_.push_back({first.instance, first.quantity, sum.moment()});
+    }
+    shares_.clear();
   }
 
   State& state_;
   Arena arena_, emission_arena_;
   StopPoll poll_;
-  std::array<Path, 2> members_;  ///< of the current pair
-  Path* path_ = nullptr;         ///< current member
-  SampledWavelengths emission_;  ///< of the current pair
-  std::vector<OfInstance> of_instances_;
+  std::array<Path, 2> members_;        ///< of the current pair
+  Path* path_ = nullptr;               ///< current member
+  SampledWavelengths emission_;        ///< of the current pair
+  std::vector<InstanceShare> shares_;  ///< of the current pair, by hit
+  std::vector<InstanceMoment> of_instances_;
 };
 
 FluorescenceFluxMeter::FluorescenceFluxMeter(Session& session, SceneDescription description,
@@ -393,13 +416,16 @@ FluorescenceFluxMeasurement FluorescenceFluxMeter::read() const {
   if (!s.by_instance) return m;
   const size_t cells = 1 + kQuantitiesOfInstance * s.emissions;
   const bool is_known = !std::isnan(m.excited.mean);
+  const auto emission_mean = [&s](size_t cell, size_t emission) {
+    return scaled(s.by_instance->at(cell).mean(s.seen[emission]), 1 / kEmissionScale);
+  };
   for (size_t first = 0; first < s.by_instance->size(); first += cells) {
     auto& one = m.instances.emplace_back();
     one.excited = is_known ? s.by_instance->at(first).mean(s.paths) : kUnknown;
     for (size_t i = 0; i < s.emissions; ++i) {
       const size_t at = first + 1 + i * kQuantitiesOfInstance;
-      one.emitted.push_back(is_known ? s.by_instance->at(at + kEmittedThere).mean(s.seen[i]) : kUnknown);
-      one.left.push_back(s.by_instance->at(at + kLeftThere).mean(s.seen[i]));
+      one.emitted.push_back(is_known ? emission_mean(at + kEmittedThere, i) : kUnknown);
+      one.left.push_back(emission_mean(at + kLeftThere, i));
     }
   }
   return m;

@@ -52,8 +52,8 @@ class FluorescenceFluxMeter {
                         const Scene* other = nullptr);
   ~FluorescenceFluxMeter();
 
-  /// Traces this many further paths, rounded up to an even number, or fewer if stopped or out of time. The result depends
-  /// only on the total number.
+  /// Traces this many further paths, rounded up to an even number, or fewer if stopped or out of time. The result
+  /// depends only on the total number.
   void trace(uint64_t paths, ThreadPool& pool, const RenderControl& control = {});
   FluorescenceFluxMeasurement read() const;
   uint64_t paths() const;  ///< number of paths traced

@@ -39,7 +39,7 @@ class BeamDiffusion {
   std::vector<float> farthest_;     ///< by albedo: radius within which 0.999 of the light leaves
   std::vector<float> density_;      ///< by albedo and radius: 2 pi r times the profile
   std::vector<float> within_;       ///< its integral from 0
-  std::vector<float> steps_;        ///< of the reflectance, equal
+  std::vector<float> steps_;        ///< numbers from 0 to kSteps: equal steps of the square root of the reflectance
   std::vector<float> inverse_;      ///< albedo, by these steps
 };
 

@@ -49,17 +49,22 @@ constexpr Param kUniform{.name = "uniform",
                          .doc = "Sample all wavelengths with the same density; the scene's Film \"spectral\" sets it."};
 constexpr Param kHeroParams[] = {kMin, kMax, kSensor, kWhiteBalance, kFluorescence, kUniform};
 
-/// Density proportional to 1 / cosh^2(0.0072 (nm - 538)), close to the eye's response (Radziszewski et al. 2009); over
-/// 360 to 830 nm the constant factor is 0.0039398042. Its integral is a difference of tanh, which is inverted.
-class VisibleDensity {
+/// Density of wavelengths: uniform, or proportional to 1 / cosh^2(0.0072 (nm - 538)), close to the eye's response
+/// (Radziszewski et al. 2009); over 360 to 830 nm the constant factor is then 0.0039398042. Its integral is a
+/// difference of tanh, which is inverted.
+class WavelengthDensity {
  public:
-  explicit VisibleDensity(Interval nm)
-      : range_nm_(nm), tanh_min_(std::tanh(reduced(nm.min))), tanh_max_(std::tanh(reduced(nm.max))) {}
+  WavelengthDensity(Interval nm, bool is_uniform)
+      : range_nm_(nm),
+        tanh_min_(std::tanh(reduced(nm.min))),
+        tanh_max_(std::tanh(reduced(nm.max))),
+        is_uniform_(is_uniform) {}
 
   struct Sample {
     double nm, pdf;
   };
   Sample sample(double u) const {
+    if (is_uniform_) return {std::lerp(range_nm_.min, range_nm_.max, u), 1 / (range_nm_.max - range_nm_.min)};
     const double t = std::lerp(tanh_min_, tanh_max_, u);
     const double atanh_t = std::log((1 + t) / (1 - t)) / 2;
     return {std::clamp(kPeak_nm + atanh_t / kRate, range_nm_.min, range_nm_.max),
@@ -73,6 +78,7 @@ class VisibleDensity {
 
   Interval range_nm_;
   double tanh_min_, tanh_max_;
+  bool is_uniform_;
 };
 
 Interval range_of(const Params& p) {
@@ -95,23 +101,23 @@ std::optional<FilmSensor> sensor_of(const Params& p) {
 }
 
 /// Quarter of the spectrum in which the first lane of a path with the number u lies: the sum of the digits of u in base
-/// 4, modulo 4. 4^n paths whose u are in 4^n equal intervals then have first lanes in 4^n equal intervals as well.
+/// 4, modulo 4. n = 2^k paths whose u are n equal steps apart then have first lanes in n equal intervals as well. Given
+/// the wavelengths, the last digits of u, which are random, decide which of them is the first.
 uint32_t first_quarter(float u) {
   constexpr uint32_t kLowDigitBits = 0x55555555;
-  const auto digits = static_cast<uint32_t>(double(u) * 0x1p32);
+  const auto digits = static_cast<uint32_t>(static_cast<uint64_t>(double(u) * 0x1p32));
   return uint32_t(std::popcount(digits & kLowDigitBits) + 2 * std::popcount(digits & ~kLowDigitBits)) % kLanes;
 }
 
 /// Hero wavelength spectral sampling (Wilkie et al. 2014): four wavelengths at equal steps of the density's integral.
 /// Their places in the quarters of the spectrum are u, so that n paths whose u are in n equal intervals have 4n
-/// different wavelengths. The film's channels are CIE XYZ.
+/// wavelengths in 4n equal intervals. The film's channels are CIE XYZ.
 class Hero final : public WavelengthStrategy, public FluorescenceColors {
  public:
   explicit Hero(const Params& p)
-      : density_(range_of(p)),
+      : density_(range_of(p), p.boolean("uniform")),
         film_(sensor_of(p)),
-        adds_fluorescence_(p.boolean("fluorescence")),
-        is_uniform_(p.boolean("uniform")) {
+        adds_fluorescence_(p.boolean("fluorescence")) {
     const Interval nm = density_.range_nm();
     if (adds_fluorescence_ && !(nm.contains(kExcitation_nm.min) && nm.contains(kExcitation_nm.max)))
       fail(p.where("fluorescence"), "fluorescence is excited from {} to {} nm, the wavelengths reach from {} to {} nm",
@@ -119,10 +125,9 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
   }
 
   SampledWavelengths sample(float u) const override {
-    if (is_uniform_) return uniform_sample(u);
+    const uint32_t first = first_quarter(u);
     SampledWavelengths lambda;
     lambda.count = kLanes;
-    const uint32_t first = first_quarter(u);
     for (size_t i = 0; i < kLanes; ++i) {
       const auto [nm, pdf] = density_.sample((double((first + i) % kLanes) + double(u)) / kLanes);
       lambda.nm[i] = static_cast<float>(nm);
@@ -134,7 +139,7 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
   /// The first lane has the stratification of the sampler, which a lane drawn by a BSDF would lose.
   SampledWavelengths sample_for_index(uint64_t, float u) const override {
     SampledWavelengths lambda = sample(u);
-    lambda.hero = is_uniform_ ? int8_t(-1) : int8_t(0);
+    lambda.hero = 0;
     return lambda;
   }
   Interval range_nm() const override { return density_.range_nm(); }
@@ -152,23 +157,9 @@ class Hero final : public WavelengthStrategy, public FluorescenceColors {
   bool adds_fluorescence() const override { return adds_fluorescence_; }
 
  private:
-  /// One wavelength in each quarter of the range: n samples whose u are in n equal intervals have 4n wavelengths in 4n
-  /// equal intervals, so that few samples cover narrow buckets. No lane has the distribution of all.
-  SampledWavelengths uniform_sample(float u) const {
-    const Interval nm = density_.range_nm();
-    SampledWavelengths lambda;
-    lambda.count = kLanes;
-    for (size_t i = 0; i < kLanes; ++i) {
-      lambda.nm[i] = static_cast<float>(std::lerp(nm.min, nm.max, (double(u) + double(i)) / kLanes));
-      lambda.pdf[i] = static_cast<float>(1 / (nm.max - nm.min));
-      lambda.active[i] = true;
-    }
-    return lambda;
-  }
-
-  VisibleDensity density_;
+  WavelengthDensity density_;
   std::optional<FilmSensor> film_;
-  bool adds_fluorescence_, is_uniform_;
+  bool adds_fluorescence_;
 };
 
 }  // namespace
