@@ -170,7 +170,7 @@ class Curves final : public AnalyticShape {
   }
 
   /// The line through the ends of a piece. Most rays that meet a piece's bounding box pass this line at more than
-  /// `radius`, which encloses the piece with its width.
+  /// `radius`, which encloses the piece with its width. 112 bytes for each Bezier curve.
   struct Chord {
     Vec3 from, along;
     float radius;
