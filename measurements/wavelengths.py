@@ -80,9 +80,9 @@ def chart(path, results):
             points = curves[strategy]
             panel.loglog([p["seconds"] for p in points], [p["mean"] for p in points], "o-", color=hue, markersize=4)
         panel.axhline(reference.noise, color="#888888", linestyle="--", linewidth=1)
-        panel.set(title=f"soybean, {SCENES[scene]}", xlabel="CPU time (s)", ylim=(0.2, 10))
+        panel.set(title=f"soybean, {SCENES[scene]}", xlabel="CPU time (s)", ylim=(0.1, 10))
         charts.plain_ticks(panel.xaxis, [0.1, 1])
-    charts.plain_ticks(panels[0, 0].yaxis, [0.2, 0.3, 0.5, 1, 2, 3, 5, 10])
+    charts.plain_ticks(panels[0, 0].yaxis, [0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5, 10])
     panels[0, 0].set_ylabel("mean colour error of leaf pixels, ΔE₀₀")
     (_, of_front), *_, (of_last, _) = results.values()
     for strategy, hue in hues.items():
